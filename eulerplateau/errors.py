@@ -1,0 +1,54 @@
+"""Errors the user can cause, each with the exit code the command line ends with."""
+
+from __future__ import annotations
+
+
+class EulerPlateauError(Exception):
+    """Base of every error a user can cause; `exit_code` is what the shell sees."""
+
+    exit_code = 1
+
+
+class SpecError(EulerPlateauError):
+    """A run or mesh specification is wrong.
+
+    `key` is the dotted key at fault ("sweep.loads"), or the file's path if the file
+    itself cannot be used.
+    """
+
+    exit_code = 2
+
+    def __init__(self, key: str, problem: str) -> None:
+        super().__init__(f"{key}: {problem}")
+        self.key = key
+
+
+class MeshError(EulerPlateauError):
+    """A mesh is not a clean triangulated disk.
+
+    `kind` is "vertex", "edge", "triangle" or "mesh"; `index` the first culprit (a vertex
+    or triangle number, or a pair of vertex numbers for an edge), None for "mesh".
+    """
+
+    exit_code = 3
+
+    def __init__(
+        self, kind: str, index: int | tuple[int, int] | None, problem: str
+    ) -> None:
+        where = kind if index is None else f"{kind} {index}"
+        super().__init__(f"{where}: {problem}")
+        self.kind = kind
+        self.index = index
+
+
+class OutputError(EulerPlateauError):
+    """A file cannot be read or written (full disk, no permission, ...)."""
+
+    exit_code = 5
+
+    def __init__(self, path: object, problem: str) -> None:
+        super().__init__(f"{path}: {problem}")
+        self.path = path
+
+
+NOT_CONVERGED_EXIT_CODE = 4

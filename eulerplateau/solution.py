@@ -7,6 +7,11 @@ from enum import Enum
 
 from eulerplateau.mesh import FloatArray
 
+# What an accepted equilibrium meets: force imbalance relative to the largest force, and
+# relative error of every loop edge's length.
+RESIDUAL_TOLERANCE = 1e-6
+LENGTH_TOLERANCE = 1e-8
+
 
 class Status(Enum):
     """How a solve ended. Only CONVERGED rows are equilibria to be trusted."""

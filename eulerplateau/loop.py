@@ -1,0 +1,58 @@
+"""The elastic loop: bending stiffness and inextensibility, edge by edge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from eulerplateau.mesh import FloatArray
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A closed chain of edges that keep their rest lengths s_v (n_b,), in units of L."""
+
+    rest_lengths: FloatArray
+
+    @cached_property
+    def mean_lengths(self) -> FloatArray:
+        """<s_v> = (s_v + s_{v-1}) / 2 (n_b,), the length that belongs to vertex v."""
+        return 0.5 * (self.rest_lengths + np.roll(self.rest_lengths, 1))
+
+    @cached_property
+    def bending_matrix(self) -> FloatArray:
+        """B (n_b, n_b) with sum_v <s_v> kappa_v^2 = tr(x^T B x) (alpha = 1)."""
+        unit = np.eye(len(self.rest_lengths))
+        tangent = (np.roll(unit, -1, axis=0) - unit) / self.rest_lengths[:, None]
+        turn = tangent - np.roll(tangent, 1, axis=0)
+        stiffness: FloatArray = turn.T @ (turn / self.mean_lengths[:, None])
+        return stiffness
+
+    def chords(self, x_loop: FloatArray) -> FloatArray:
+        """Return e_v = x_{v+1} - x_v (n_b, 3) of loop positions (n_b, 3)."""
+        chords: FloatArray = np.roll(x_loop, -1, axis=0) - x_loop
+        return chords
+
+    def constraint(self, x_loop: FloatArray) -> FloatArray:
+        """Return c_v = (|e_v|^2 - s_v^2) / (2 s_v) (n_b,); zero where lengths are kept.
+
+        Formed as (|e| - s)(|e| + s) / (2 s): the difference of squares would lose half
+        of the digits that are left near zero.
+        """
+        lengths = np.linalg.norm(self.chords(x_loop), axis=1)
+        s = self.rest_lengths
+        excess: FloatArray = (lengths - s) * (lengths + s) / (2 * s)
+        return excess
+
+    def length_error(self, x_loop: FloatArray) -> float:
+        """Return max |l_v / s_v - 1|."""
+        lengths = np.linalg.norm(self.chords(x_loop), axis=1)
+        return float(np.abs(lengths / self.rest_lengths - 1).max())
+
+    def tension_force(self, x_loop: FloatArray, multipliers: FloatArray) -> FloatArray:
+        """Return J^T lambda (n_b, 3), the gradient of sum_v lambda_v c_v."""
+        pull = (multipliers / self.rest_lengths)[:, None] * self.chords(x_loop)
+        force: FloatArray = np.roll(pull, 1, axis=0) - pull
+        return force

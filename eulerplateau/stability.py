@@ -1,0 +1,53 @@
+"""Stability: the spectrum of the second variation on the constraint's tangent space."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.mesh import FloatArray
+from eulerplateau.tangent import TangentModel
+
+
+@dataclass(frozen=True)
+class Stability:
+    """Eigenvalues of the second variation, rigid motions removed.
+
+    Attributes
+    ----------
+    eigenvalues : (m,) float, ascending, in units alpha / L^3 for the norm integral |p|^2 ds
+    error_bound : float
+        What rounding can have moved each eigenvalue by.
+    """
+
+    eigenvalues: FloatArray
+    error_bound: float
+
+    @property
+    def n_unstable(self) -> int:
+        """Eigenvalues that are negative beyond their error bound: the Morse index."""
+        return int(np.sum(self.eigenvalues < -self.error_bound))
+
+    @property
+    def n_neutral(self) -> int:
+        """Eigenvalues that cannot be told from zero: neither stable nor unstable."""
+        return int(np.sum(np.abs(self.eigenvalues) <= self.error_bound))
+
+    @property
+    def lowest(self) -> float:
+        """The smallest eigenvalue; infinite where the loop cannot move at all."""
+        return float(self.eigenvalues[0]) if len(self.eigenvalues) else np.inf
+
+
+def stability(model: TangentModel) -> Stability:
+    """Return the spectrum at an equilibrium.
+
+    The error bound is the backward error of the symmetric eigensolver and of the projected
+    Hessian, a small multiple of eps |H|_2 (Weyl).
+    """
+    values = model.eigen[0]
+    if len(values) == 0:
+        return Stability(values, 0.0)
+    eps = float(np.finfo(np.float64).eps)
+    return Stability(values, 10 * eps * float(np.abs(values).max()))

@@ -102,7 +102,6 @@ def _descend(
     # 4 mu / s = 16 / s^3. Softer lets lengths drift, stiffer slows the iteration down.
     penalty = 4.0 / float(np.mean(problem.loop.rest_lengths)) ** 2
     iterate = _Iterate(x, multipliers, _FIRST_TOLERANCE, 0)
-    stalls = 0
     while True:
         forces, tension, scale = _forces(problem, iterate, load, penalty)
         residual = float(np.abs(forces).max()) / scale
@@ -118,13 +117,11 @@ def _descend(
                 problem.length_error(iterate.x) <= LENGTH_TOLERANCE
             ):
                 return _record(problem, iterate, load, Status.CONVERGED)
-            continue_from = _forces(problem, iterate, load, penalty)
-            forces, tension, scale = continue_from
+            forces, tension, scale = _forces(problem, iterate, load, penalty)
         if iterate.iterations >= budget:
             return _record(problem, iterate, load, Status.ITERATION_LIMIT)
         after = _minimise(problem, iterate, load, penalty, forces, tension, scale)
-        stalls = stalls + 1 if after.iterations == iterate.iterations else 0
-        if stalls == 3:
+        if after is None:
             return _record(problem, iterate, load, Status.STALLED)
         iterate = after
 
@@ -153,8 +150,8 @@ def _minimise(
     forces: FloatArray,
     tension: FloatArray,
     scale: float,
-) -> _Iterate:
-    """Run scipy's conjugate gradients from the iterate as base point."""
+) -> _Iterate | None:
+    """Run scipy's conjugate gradients from the iterate as base point; None if stuck."""
     weights = load * problem.film.weights
     shape = iterate.x.shape
 
@@ -181,6 +178,8 @@ def _minimise(
         method="CG",
         options={"gtol": iterate.tolerance * scale, "maxiter": _ITERATIONS_PER_BASE},
     )
+    if found.nit == 0 and not found.success:
+        return None
     return replace(
         iterate,
         x=iterate.x + found.x.reshape(shape),

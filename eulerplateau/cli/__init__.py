@@ -1,0 +1,63 @@
+"""The command line `eulerplateau`; each command loads what it needs when it runs."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+from typing import Any, NoReturn
+
+import click
+
+from eulerplateau import __version__
+from eulerplateau.cli.mesh import mesh
+from eulerplateau.cli.sweep import sweep
+from eulerplateau.errors import EulerPlateauError, OutputError
+
+_INTERRUPTED = 130
+
+EXIT_CODES = """\b
+Exit codes: 0 all is well; 2 the specification or the arguments are wrong;
+3 the mesh is wrong; 4 a load did not converge; 5 a file could not be
+read or written; 130 interrupted."""
+
+
+@click.group(epilog=EXIT_CODES)
+@click.version_option(__version__, prog_name="eulerplateau")
+def commands() -> None:
+    """Shapes of elastic loops spanned by soap films: the Euler-Plateau problem."""
+
+
+commands.add_command(mesh)
+commands.add_command(sweep)
+
+
+def main() -> NoReturn:
+    """Run the command line; every error a user can cause is one line and an exit code."""
+    logging.basicConfig(format="eulerplateau: %(message)s", level=logging.WARNING)
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        code = commands.main(prog_name="eulerplateau", standalone_mode=False)
+    except click.exceptions.Exit as end:
+        code = end.exit_code
+    except click.ClickException as error:
+        error.show()
+        code = error.exit_code
+    except (click.Abort, KeyboardInterrupt):
+        _say("interrupted; what was computed is in the run folder")
+        code = _INTERRUPTED
+    except EulerPlateauError as error:
+        _say(str(error))
+        code = error.exit_code
+    except OSError as error:
+        _say(f"{error.filename or 'a file'}: {error.strerror or error}")
+        code = OutputError.exit_code
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def _interrupt(*_: Any) -> NoReturn:
+    raise KeyboardInterrupt
+
+
+def _say(text: str) -> None:
+    click.echo(f"eulerplateau: {text}", err=True)

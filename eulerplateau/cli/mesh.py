@@ -1,0 +1,33 @@
+"""`eulerplateau mesh`: make a mesh file from a mesh specification."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("spec", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="The mesh file; its suffix chooses the format: .vtp .vtu .vtk .msh .off .ply ...",
+)
+@click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+def mesh(spec: Path, output: Path, quiet: bool) -> None:
+    """Make the triangulated disk of SPEC (meshes/*.toml) with Gmsh and write it.
+
+    SPEC may also be a mesh file, which is then checked and converted.
+    """
+    from eulerplateau.meshing import load_mesh, write_mesh
+
+    made = load_mesh(spec)
+    write_mesh(made, output)
+    if not quiet:
+        click.echo(
+            f"{output}: {made.n_v} vertices, {len(made.triangles)} triangles, "
+            f"{made.n_b} loop edges, L = {made.length:.6g}"
+        )

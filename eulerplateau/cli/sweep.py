@@ -1,0 +1,170 @@
+"""`eulerplateau sweep`: one run or many, with a progress bar."""
+
+from __future__ import annotations
+
+import itertools
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError, SpecError
+
+if TYPE_CHECKING:
+    from eulerplateau.output.table import Row
+    from eulerplateau.runs.spec import RunSpec
+    from eulerplateau.runs.sweep import RunResult
+
+
+@click.command()
+@click.argument(
+    "specs", metavar="RUN.toml...", nargs=-1, required=True, type=click.Path(path_type=Path)
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="The run folder; for several runs, the folder that holds theirs. "
+    "Default: beside RUN.toml, with its name.",
+)
+@click.option("--solver", help="newton or cg; short for --set solver.name=NAME.")
+@click.option(
+    "--set",
+    "settings",
+    metavar="KEY=VALUE,...",
+    multiple=True,
+    help="Replace a key of the specification, as in solver.name=cg or start.seed=1,2,3; "
+    "several values make several runs, several --set all their combinations.",
+)
+@click.option("--pictures/--no-pictures", default=True, help="Draw diagram.png (default).")
+@click.option("--render", is_flag=True, help="Render one picture per distinct state.")
+@click.option("--quiet", is_flag=True, help="No progress bar, no summary: for batches.")
+def sweep(
+    specs: tuple[Path, ...],
+    out: Path | None,
+    solver: str | None,
+    settings: tuple[str, ...],
+    pictures: bool,
+    render: bool,
+    quiet: bool,
+) -> int:
+    """Follow the equilibria of each RUN.toml over its loads.
+
+    Writes a run folder: sweep.csv (one row per load), shapes/*.vtp and sweep.pvd (for
+    ParaView), run.json, diagram.png.
+    """
+    values = [_setting(text) for text in settings]
+    if solver is not None:
+        values.append(("solver.name", [solver]))
+    code = 0
+    for spec, folder in _planned(specs, values, out):
+        try:
+            result = _run(spec, folder, quiet)
+        except EulerPlateauError as error:
+            # One bad run of many must not cost the others.
+            click.echo(f"eulerplateau: {folder}: {error}", err=True)
+            code = max(code, error.exit_code)
+            continue
+        drawn = _draw(result, pictures, render)
+        if result.failures:
+            code = max(code, NOT_CONVERGED_EXIT_CODE)
+        _report(result, drawn, quiet)
+    return code
+
+
+def _setting(text: str) -> tuple[str, list[Any]]:
+    """Parse KEY=VALUE,VALUE: TOML values, or bare words."""
+    key, equals, given = text.partition("=")
+    if not equals or not key:
+        raise click.BadParameter(f"{text!r} should be KEY=VALUE,...", param_hint="--set")
+    try:
+        return key, tomllib.loads(f"values = [{given}]")["values"]
+    except tomllib.TOMLDecodeError:
+        return key, given.split(",")
+
+
+def _planned(
+    specs: tuple[Path, ...], settings: list[tuple[str, list[Any]]], out: Path | None
+) -> list[tuple[RunSpec, Path]]:
+    """Return every run and its folder; all specifications are checked before any run."""
+    from eulerplateau.runs.spec import load_run
+
+    keys = [key for key, _ in settings]
+    varied = {key for key, values in settings if len(values) > 1}
+    combinations = list(itertools.product(*(values for _, values in settings)))
+    many = len(specs) * len(combinations) > 1
+    runs = []
+    for path in specs:
+        for combination in combinations:
+            overrides = dict(zip(keys, combination, strict=True))
+            if "mesh.file" in overrides:
+                # Given on the command line, so relative to where the command was given.
+                overrides["mesh.file"] = str(Path(overrides["mesh.file"]).absolute())
+            name = path.stem + "".join(
+                f"-{key.rpartition('.')[2]}={_word(value)}"
+                for key, value in zip(keys, combination, strict=True)
+                if key in varied
+            )
+            folder = path.parent / name if out is None else out / name if many else out
+            runs.append((load_run(path, overrides), folder))
+    folders = [folder for _, folder in runs]
+    if len(set(folders)) < len(folders):
+        raise SpecError("RUN.toml", "two runs would share a folder: rename a file")
+    return runs
+
+
+def _word(value: Any) -> str:
+    """Return a value as a part of a folder's name."""
+    return "".join(c if c.isalnum() or c in "._+-" else "_" for c in Path(str(value)).stem)
+
+
+def _run(spec: RunSpec, folder: Path, quiet: bool) -> RunResult:
+    from eulerplateau.runs.sweep import carry_out
+
+    if quiet:
+        return carry_out(spec, folder)
+    from tqdm import tqdm
+
+    total = len(spec.loads())
+    with tqdm(total=total, desc=folder.name, unit="load", dynamic_ncols=True) as bar:
+
+        def show(row: Row) -> None:
+            bar.set_postfix_str(
+                f"kL3/alpha {row.kL3_alpha:g}, <|kappa_n|> {row.abs_kappa_n:.3g}"
+            )
+            bar.update()
+
+        return carry_out(spec, folder, show)
+
+
+def _draw(result: RunResult, pictures: bool, render: bool) -> list[str]:
+    """Draw what was asked for; return the names of what was drawn."""
+    drawn = []
+    if pictures:
+        from eulerplateau.plots import draw_diagram
+
+        if draw_diagram(result.folder):
+            drawn.append("diagram.png")
+    if render:
+        from eulerplateau.output.states import distinct_steps
+        from eulerplateau.render import draw_shapes
+
+        steps = distinct_steps(result.rows)
+        if draw_shapes(result.folder, steps):
+            drawn.append(f"{len(steps)} pictures")
+    return drawn
+
+
+def _report(result: RunResult, drawn: list[str], quiet: bool) -> None:
+    for row in result.failures:
+        click.echo(
+            f"eulerplateau: {result.folder}: load {row.kL3_alpha:g} {row.status.value}: "
+            f"{row.status.advice}",
+            err=True,
+        )
+    if not quiet:
+        converged = len(result.rows) - len(result.failures)
+        click.echo(
+            f"{result.folder}: {converged} of {len(result.rows)} loads converged in "
+            f"{result.seconds:.1f} s: {', '.join(['sweep.csv', 'sweep.pvd', *drawn])}"
+        )

@@ -1,0 +1,164 @@
+"""Read TOML files into frozen pydantic models; one line names the key that is wrong."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar, get_args
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
+
+from eulerplateau.errors import OutputError, SpecError
+
+_LONGEST_QUOTE = 60
+
+
+class Settings(BaseModel):
+    """Base of everything read from TOML: frozen, strict, no unknown keys, no NaN.
+
+    An integer is accepted where a float is meant, a list where a tuple is, and a string
+    where an enumeration or a path is; "3" is not 3. Checks that a type cannot express
+    raise ValueError in a pydantic validator.
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", strict=True, allow_inf_nan=False, validate_default=True
+    )
+
+
+Model = TypeVar("Model", bound=Settings)
+
+
+def load_toml(path: str | Path, model: type[Model]) -> Model:
+    """Read the TOML file `path` into `model`.
+
+    Raises SpecError naming the key (or the file itself) that is wrong, OutputError if the
+    file exists and cannot be read.
+    """
+    return validate(read_toml(path), model, str(path))
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """Read the TOML file `path` as plain data; raises what `load_toml` raises."""
+    try:
+        text = Path(path).read_bytes()
+    except FileNotFoundError:
+        raise SpecError(str(path), "there is no such file") from None
+    except IsADirectoryError:
+        raise SpecError(str(path), "is a folder, not a TOML file") from None
+    except OSError as error:
+        raise OutputError(path, f"cannot be read: {error.strerror}") from None
+    try:
+        return tomllib.loads(text.decode("utf-8"))
+    except ValueError as error:
+        raise SpecError(str(path), f"is not valid TOML: {error}") from None
+
+
+def validate(data: Mapping[str, Any], model: type[Model], source: str) -> Model:
+    """Return `data` as an instance of `model`.
+
+    Raises SpecError whose `key` is the dotted key at fault, or `source` (the file's path,
+    or a word for where the data came from) if the data as a whole is wrong.
+    """
+    try:
+        # JSON is the mode in which strict pydantic still takes lists for tuples and
+        # strings for enumerations, which is all that TOML can offer.
+        return model.model_validate_json(json.dumps(data, default=str))
+    except ValidationError as error:
+        raise _spec_error(error.errors(include_url=False), data, model, source) from None
+
+
+def _spec_error(
+    errors: Sequence[ErrorDetails],
+    data: Mapping[str, Any],
+    model: type[Settings],
+    source: str,
+) -> SpecError:
+    # A misspelt key is also reported as a missing one: the misspelling comes first.
+    first = min(errors, key=lambda error: error["type"] != "extra_forbidden")
+    key = _key(first, data)
+    if first["type"] == "extra_forbidden":
+        problem = _unknown(str(first["loc"][-1]), _allowed_keys(model, first["loc"][:-1]))
+    elif first["type"] in ("missing", "union_tag_not_found"):
+        problem = "is missing and has no default"
+    else:
+        # The branches of a union fail one by one at the same key: any would be right.
+        alike = [error for error in errors if _key(error, data) == key]
+        problem = _mismatch(alike)
+    if not key:
+        return SpecError(source, problem)
+    return SpecError(key, f"{problem} (in {source})")
+
+
+def _key(error: ErrorDetails, data: Any) -> str:
+    """Return the dotted TOML key; pydantic's location also holds names of union members."""
+    key = ""
+    for place, part in enumerate(error["loc"]):
+        if isinstance(part, int) and isinstance(data, list) and part < len(data):
+            key += f"[{part}]"
+            data = data[part]
+        elif isinstance(data, Mapping) and part in data:
+            key += f".{part}"
+            data = data[part]
+        elif error["type"] == "missing" and place == len(error["loc"]) - 1:
+            key += f".{part}"
+    if error["type"] in ("union_tag_invalid", "union_tag_not_found"):
+        key += "." + error["ctx"]["discriminator"].strip("'")
+    return key.removeprefix(".")
+
+
+def _mismatch(errors: Sequence[ErrorDetails]) -> str:
+    first = errors[0]
+    if first["type"] == "union_tag_invalid":
+        tags = first["ctx"]["expected_tags"]
+        return f"found '{first['ctx']['tag']}'; should be one of {tags}"
+    if first["type"] == "value_error":
+        expected = str(first["ctx"]["error"])
+    else:
+        bare = dict.fromkeys(error["msg"].removeprefix("Input ") for error in errors)
+        expected = " or ".join(bare).replace(" or should be ", " or ")
+    if isinstance(first["input"], dict):
+        return expected
+    return f"found {_quote(first['input'])}; {expected}"
+
+
+def _unknown(name: str, allowed: list[str]) -> str:
+    near = difflib.get_close_matches(name, allowed, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    return f"is not a known key; {hint}The keys here are {', '.join(allowed)}"
+
+
+def _allowed_keys(model: type[BaseModel], place: Sequence[str | int]) -> list[str]:
+    """Return the keys allowed at `place`, a pydantic location inside `model`."""
+    models = [model]
+    for part in place:
+        if isinstance(part, int):
+            continue
+        inside = [
+            nested
+            for outer in models
+            if part in outer.model_fields
+            for nested in _models(outer.model_fields[part].annotation)
+        ]
+        tagged = [candidate for candidate in models if _has_tag(candidate, part)]
+        models = inside or tagged or models
+    return list(dict.fromkeys(name for m in models for name in m.model_fields))
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for part in get_args(annotation) for model in _models(part)]
+
+
+def _has_tag(model: type[BaseModel], tag: str) -> bool:
+    return any(tag in get_args(field.annotation) for field in model.model_fields.values())
+
+
+def _quote(value: Any) -> str:
+    text = json.dumps(value, ensure_ascii=False, default=str)
+    return text if len(text) <= _LONGEST_QUOTE else text[: _LONGEST_QUOTE - 3] + "..."

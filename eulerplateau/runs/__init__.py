@@ -1,0 +1,1 @@
+"""Runs: what a specification says, and the sweep that carries it out."""

@@ -1,0 +1,183 @@
+"""What a run specification (runs/*.toml) may say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field, field_validator, model_validator
+
+from eulerplateau.errors import SpecError
+from eulerplateau.meshing import MeshSpec
+from eulerplateau.parameters import Settings, read_toml, validate
+
+
+class StoredMesh(Settings):
+    """A mesh file, or a mesh specification in a file; relative to the run's file."""
+
+    file: str
+
+
+class FilmSettings(Settings):
+    """Which film spans the loop."""
+
+    model: Literal["springs"] = "springs"
+
+
+class LoopSettings(Settings):
+    """The loop's bending modulus and length, which turn spring constants into loads.
+
+    Attributes
+    ----------
+    alpha : float
+        Bending energy is alpha * kappa^2 per length (the rod's rigidity is 2 alpha).
+    length : float
+    """
+
+    alpha: float = Field(default=1.0, gt=0)
+    length: float = Field(default=1.0, gt=0)
+
+
+class StartSettings(Settings):
+    """The first shape: the flat mesh, each vertex displaced across its plane.
+
+    Attributes
+    ----------
+    displacement : float
+        Standard deviation, in units of L, of a normal distribution.
+    seed : int
+        Of NumPy's default generator.
+    """
+
+    displacement: float = Field(default=1e-3, ge=0)
+    seed: int = Field(default=1, ge=0)
+
+
+class Range(Settings):
+    """Equally spaced values, both ends included (the last may fall short of `stop`)."""
+
+    start: float = Field(ge=0)
+    stop: float = Field(ge=0)
+    step: float = Field(gt=0)
+
+    @field_validator("stop")
+    @classmethod
+    def _upwards(cls, stop: float, info: Any) -> float:
+        if stop < info.data.get("start", 0):
+            raise ValueError(
+                "should not be below start: sweep.direction turns a sweep round"
+            )
+        return stop
+
+    def values(self) -> list[float]:
+        """Return the values, ascending."""
+        # Half an ulp-sized step of slack: 0.1 * 3 must not lose the end of the range.
+        count = int(np.floor((self.stop - self.start) / self.step * (1 + 1e-12))) + 1
+        return [float(self.start + i * self.step) for i in range(count)]
+
+
+class Refinement(Settings):
+    """Values onset * (1 + eps), eps geometrically spaced: for scaling laws at an onset."""
+
+    onset: float = Field(gt=0)
+    nearest: float = Field(gt=0)
+    farthest: float = Field(gt=0)
+    count: int = Field(ge=2)
+
+    def values(self) -> list[float]:
+        """Return the values, ascending."""
+        distances = np.geomspace(self.nearest, self.farthest, self.count)
+        return sorted(float(v) for v in self.onset * (1 + distances))
+
+
+class SweepSettings(Settings):
+    """Which loads, in which order.
+
+    Attributes
+    ----------
+    loads : list of numbers, ranges {start, stop, step} and refinements
+        {onset, nearest, farthest, count}; sorted, each value once.
+    quantity : "kL3_alpha" or "k"
+        Whether `loads` are k L^3 / alpha or spring constants k.
+    direction : "up", "down" or "up-down"
+    """
+
+    loads: tuple[float | Range | Refinement, ...] = Field(min_length=1)
+    quantity: Literal["kL3_alpha", "k"] = "kL3_alpha"
+    direction: Literal["up", "down", "up-down"] = "up"
+
+    @field_validator("loads")
+    @classmethod
+    def _not_negative(cls, loads: tuple[Any, ...]) -> tuple[Any, ...]:
+        for load in loads:
+            if isinstance(load, float) and load < 0:
+                raise ValueError(f"should hold no negative number such as {load}")
+        return loads
+
+    def values(self) -> list[float]:
+        """Return the values in the order in which they are swept."""
+        listed = [
+            [load] if isinstance(load, float) else load.values() for load in self.loads
+        ]
+        rising = sorted({value for values in listed for value in values})
+        if self.direction == "up":
+            return rising
+        falling = rising[::-1]
+        return falling if self.direction == "down" else rising + falling[1:]
+
+
+class SolverSettings(Settings):
+    """Which solver, and after how many iterations it gives up on a load."""
+
+    name: Literal["newton", "cg"] = "newton"
+    max_iterations: int | None = Field(default=None, ge=1)
+
+
+class RunSpec(Settings):
+    """One run: a mesh, a film, a loop, a start, the loads, a solver."""
+
+    mesh: StoredMesh | MeshSpec
+    film: FilmSettings = FilmSettings()
+    loop: LoopSettings = LoopSettings()
+    start: StartSettings = StartSettings()
+    sweep: SweepSettings
+    solver: SolverSettings = SolverSettings()
+
+    @model_validator(mode="after")
+    def _loads_are_finite(self) -> RunSpec:
+        if not np.isfinite(self.loads()).all():
+            raise ValueError("sweep.loads times L^3 / alpha overflows: use smaller values")
+        return self
+
+    def loads(self) -> list[float]:
+        """Return the loads k L^3 / alpha in the order in which they are swept."""
+        scale = 1.0
+        if self.sweep.quantity == "k":
+            scale = self.loop.length**3 / self.loop.alpha
+        return [scale * value for value in self.sweep.values()]
+
+
+def load_run(path: Path, overrides: dict[str, Any]) -> RunSpec:
+    """Read a run specification, with `overrides` {dotted key: value} on top.
+
+    A relative mesh file is looked for beside the specification. Raises SpecError.
+    """
+    data = read_toml(path)
+    for key, value in overrides.items():
+        _override(data, key, value)
+    mesh = data.get("mesh")
+    if isinstance(mesh, dict) and isinstance(mesh.get("file"), str):
+        mesh["file"] = str(path.parent / mesh["file"])
+    return validate(data, RunSpec, str(path))
+
+
+def _override(data: dict[str, Any], key: str, value: Any) -> None:
+    *sections, name = key.split(".")
+    if not sections:
+        raise SpecError(key, "should name its section, as in solver.name or sweep.loads")
+    for section in sections:
+        data = data.setdefault(section, {})
+        if not isinstance(data, dict):
+            raise SpecError(key, f"{section} is not a section of the specification")
+    data[name] = value

@@ -1,0 +1,181 @@
+"""Carry out a run: from its specification to a folder of rows, shapes and pictures."""
+
+from __future__ import annotations
+
+import platform
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from threadpoolctl import threadpool_info, threadpool_limits
+
+from eulerplateau import __version__
+from eulerplateau.measures import measure, waist_path
+from eulerplateau.mesh import DiskMesh, FloatArray
+from eulerplateau.meshing import generate, load_mesh
+from eulerplateau.output.folder import RunFolder
+from eulerplateau.output.table import Row
+from eulerplateau.problem import Problem, make_problem
+from eulerplateau.runs.spec import RunSpec, StoredMesh
+from eulerplateau.solution import Equilibrium
+
+Solver = Callable[[Problem, FloatArray, FloatArray, float], Equilibrium]
+
+SOLVER_MODULES = {"newton": "newton", "cg": "conjugate_gradient"}
+
+# Below this many loop vertices two threads cost more in waiting than they win in work.
+_LOOP_WORTH_TWO_THREADS = 400
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """What a run came to: where, how many loads, which of them did not converge."""
+
+    folder: Path
+    rows: tuple[Row, ...]
+    seconds: float
+
+    @property
+    def failures(self) -> list[Row]:
+        """The rows that are not equilibria."""
+        return [row for row in self.rows if not row.converged]
+
+
+def carry_out(
+    spec: RunSpec, path: Path, on_row: Callable[[Row], None] = lambda row: None
+) -> RunResult:
+    """Run `spec` into the folder `path`, calling `on_row` as each row is on disk.
+
+    Interrupted (KeyboardInterrupt) or failing half-way it leaves a valid folder and says
+    so in its run.json. Raises MeshError, SpecError, OutputError.
+    """
+    started = time.perf_counter()
+    mesh = make_mesh(spec)
+    problem = make_problem(mesh, spec.film.model)
+    threads = None if mesh.n_b > _LOOP_WORTH_TWO_THREADS else 1
+    rows: list[Row] = []
+    summary = describe(spec, mesh)
+    with (
+        threadpool_limits(threads, user_api="blas"),
+        RunFolder.create(path, {**summary, "status": "running"}) as folder,
+    ):
+        summary["blas_threads"] = [pool["num_threads"] for pool in threadpool_info()]
+        path_across = waist_path(mesh)
+        status = "interrupted"
+        try:
+            for step, found in enumerate(equilibria(spec, mesh, problem)):
+                shape = measure(mesh, found.x, path_across)
+                row = _row(step, found, problem, asdict(shape))
+                folder.record(row, mesh, found.x)
+                rows.append(row)
+                on_row(row)
+            status = "finished"
+        finally:
+            seconds = time.perf_counter() - started
+            totals = _totals(rows, seconds)
+            folder.write_summary({**summary, "status": status, "totals": totals})
+    return RunResult(path, tuple(rows), seconds)
+
+
+def make_mesh(spec: RunSpec) -> DiskMesh:
+    """Read or generate the mesh of a run."""
+    if isinstance(spec.mesh, StoredMesh):
+        return load_mesh(Path(spec.mesh.file))
+    return generate(spec.mesh)
+
+
+def equilibria(spec: RunSpec, mesh: DiskMesh, problem: Problem) -> Iterator[Equilibrium]:
+    """Yield one equilibrium per load, each started from the last shape."""
+    return sweep(problem, start_shape(spec, mesh), spec.loads(), make_solver(spec))
+
+
+def sweep(
+    problem: Problem, x: FloatArray, loads: Sequence[float], solver: Solver
+) -> Iterator[Equilibrium]:
+    """Yield one equilibrium per load; x (n_v, 3) is where the first one starts.
+
+    A shape that is not finite is recorded, and not started from.
+    """
+    multipliers = np.zeros(len(problem.loop_vertices))
+    for load in loads:
+        found = solver(problem, x, multipliers, load)
+        yield found
+        if np.isfinite(found.x).all():
+            x, multipliers = found.x, found.multipliers
+
+
+def start_shape(spec: RunSpec, mesh: DiskMesh) -> FloatArray:
+    """Return the mesh with every vertex displaced at random across its mean plane."""
+    centred = mesh.x[mesh.loop] - mesh.x[mesh.loop].mean(axis=0)
+    across = np.linalg.svd(centred)[2][2]
+    noise = np.random.default_rng(spec.start.seed).standard_normal(mesh.n_v)
+    return mesh.x + np.outer(spec.start.displacement * noise, across)
+
+
+def make_solver(spec: RunSpec) -> Solver:
+    """Return the solver a run asks for; only that one is imported."""
+    solve = import_module(f"eulerplateau.{SOLVER_MODULES[spec.solver.name]}").solve
+    limit = spec.solver.max_iterations
+    chosen: Solver = solve if limit is None else partial(solve, max_iterations=limit)
+    return chosen
+
+
+def describe(spec: RunSpec, mesh: DiskMesh) -> dict[str, Any]:
+    """Return what run.json says before anything is computed.
+
+    B and E are the loop's and all edges, from which the paper's sigma = 4 sqrt(3) k /
+    (2 - B/E) can be had; sigma_hat in sweep.csv is 2 sqrt(3) k L^3 / alpha.
+    """
+    return {
+        "spec": spec.model_dump(mode="json"),
+        "mesh": {
+            "sha256": mesh.digest,
+            "vertices": mesh.n_v,
+            "triangles": len(mesh.triangles),
+            "loop_edges_B": mesh.n_b,
+            "edges_E": len(mesh.edges),
+            "length": mesh.length,
+        },
+        "seed": spec.start.seed,
+        "versions": {
+            "eulerplateau": __version__,
+            "python": platform.python_version(),
+            **{name: version(name) for name in ("numpy", "scipy", "numba", "vtk", "gmsh")},
+        },
+        "machine": platform.machine(),
+    }
+
+
+def _totals(rows: Sequence[Row], seconds: float) -> dict[str, Any]:
+    return {
+        "loads": len(rows),
+        "not_converged": [row.step for row in rows if not row.converged],
+        "iterations": sum(row.iterations for row in rows),
+        "solver_seconds": sum(row.seconds for row in rows),
+        "seconds": seconds,
+    }
+
+
+def _row(step: int, found: Equilibrium, problem: Problem, shape: dict[str, Any]) -> Row:
+    return Row(
+        step=step,
+        kL3_alpha=found.load,
+        sigma_hat=problem.film.tension_per_load * found.load,
+        energy=found.energy,
+        film_energy=found.film_energy,
+        bending_energy=found.bending_energy,
+        n_unstable=found.n_unstable,
+        lowest_eigenvalue=found.lowest_eigenvalue,
+        residual=found.residual,
+        length_error=found.length_error,
+        iterations=found.iterations,
+        seconds=found.seconds,
+        status=found.status,
+        **shape,
+    )

@@ -52,15 +52,19 @@ class DiskMesh:
         Raises MeshError naming the first vertex, edge or triangle that is wrong.
         """
         given: FloatArray = np.asarray(points, dtype=np.float64)
-        corners: IntArray = np.asarray(triangles, dtype=np.int64)
+        corners: IntArray = np.array(triangles, dtype=np.int64)
         _check_arrays(given, corners)
         loop = _check_topology(len(given), corners)
-        centred = given - given[loop].mean(axis=0)
+        # A power of two takes squares out of reach of overflow, and rounds nothing.
+        exponent = int(np.frexp(np.abs(given).max())[1])
+        scaled = np.ldexp(given, -exponent)
+        centred = scaled - scaled[loop].mean(axis=0)
         _check_geometry(centred, corners)
         chords = centred[np.roll(loop, -1)] - centred[loop]
         lengths = np.linalg.norm(chords, axis=1)
         total = float(lengths.sum())
-        return cls(centred / total, corners, loop, lengths / total, total)
+        length = float(np.ldexp(total, exponent))
+        return cls(centred / total, corners, loop, lengths / total, length)
 
     @property
     def n_v(self) -> int:

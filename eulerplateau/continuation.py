@@ -1,0 +1,215 @@
+"""Pseudo-arclength continuation of equilibria in the load, through folds.
+
+A branch is a curve of loops x(s) and loads l(s). With the tangent model's gradient g,
+Hessian H and b = dg/dl on the tangent space of the constraint, its direction (p, l') solves
+
+    H p + b l' = 0,        |p|^2 + (w l')^2 = 1,
+
+and each point is corrected inside the hyperplane normal to the last direction (Keller
+1977). Stable or not makes no difference here: a root of the forces is sought, no minimum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from eulerplateau.inextensible import project_lengths
+from eulerplateau.mesh import FloatArray
+from eulerplateau.newton import loop_energy
+from eulerplateau.problem import Problem
+from eulerplateau.solution import RESIDUAL_TOLERANCE
+from eulerplateau.stability import Stability, stability
+from eulerplateau.tangent import TangentModel, tangent_model
+
+_CORRECTIONS = 12
+_EASY = 4  # corrections up to which the step may grow
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a branch is followed.
+
+    Attributes
+    ----------
+    load_range : the window of loads; a branch ends where it leaves it
+    load_unit : float
+        A change of the load by this much is as long as a displacement of 1 L (r.m.s.).
+    first_step, largest_step, smallest_step : arclengths
+    max_points : int, per branch
+    """
+
+    load_range: tuple[float, float]
+    load_unit: float
+    first_step: float = 5e-3
+    largest_step: float = 0.03
+    smallest_step: float = 1e-9
+    max_points: int = 400
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A direction of a branch: displacement (n_b, 3) and load rate, of unit arclength."""
+
+    displacement: FloatArray
+    load: float
+
+    def reversed(self) -> Direction:
+        """Return the opposite direction."""
+        return Direction(-self.displacement, -self.load)
+
+
+@dataclass(frozen=True)
+class BranchPoint:
+    """An equilibrium on a branch, the branch's direction there, and its stability."""
+
+    model: TangentModel
+    load: float
+    direction: Direction
+    arclength: float
+    corrections: int
+
+    @property
+    def x(self) -> FloatArray:
+        """Loop positions (n_b, 3)."""
+        return self.model.x
+
+    @property
+    def stability(self) -> Stability:
+        """Spectrum of the second variation."""
+        return stability(self.model)
+
+
+def first_point(
+    problem: Problem, x_loop: FloatArray, load: float, settings: Settings
+) -> BranchPoint:
+    """Return the branch point at an equilibrium (n_b, 3), heading for higher loads."""
+    model = tangent_model(loop_energy(problem, load), x_loop)
+    upwards = Direction(np.zeros_like(x_loop), settings.load_unit)
+    direction = branch_direction(problem, model, upwards, settings)
+    return BranchPoint(model, load, direction, 0.0, 0)
+
+
+def follow(
+    problem: Problem,
+    start: BranchPoint,
+    settings: Settings,
+    stop: Callable[[BranchPoint], bool] = lambda point: False,
+) -> Iterator[BranchPoint]:
+    """Yield the points after `start` until the branch leaves the window or `stop` is true.
+
+    Ends early where no step, however short, can be corrected.
+    """
+    point, step = start, settings.first_step
+    low, high = settings.load_range
+    for _ in range(settings.max_points):
+        after = None
+        while after is None:
+            after = advance(problem, point, step, settings)
+            if after is None:
+                step *= 0.5
+                if step < settings.smallest_step:
+                    return
+        yield after
+        if stop(after) or not low <= after.load <= high:
+            return
+        point = after
+        if after.corrections <= _EASY:
+            step = min(1.5 * step, settings.largest_step)
+
+
+def advance(
+    problem: Problem, point: BranchPoint, step: float, settings: Settings
+) -> BranchPoint | None:
+    """Return the branch point at arclength `step` from `point`; None if not corrected."""
+    guess = point.x + step * point.direction.displacement
+    load = point.load + step * point.direction.load
+    after = correct(problem, guess, load, point.direction, settings)
+    if after is None:
+        return None
+    return replace(after, arclength=point.arclength + step)
+
+
+def correct(
+    problem: Problem,
+    guess: FloatArray,
+    load: float,
+    direction: Direction,
+    settings: Settings,
+) -> BranchPoint | None:
+    """Return the equilibrium in the hyperplane through the guess normal to `direction`."""
+    x = project_lengths(problem.loop, guess)
+    best = np.inf
+    guess_load = load
+    for corrections in range(_CORRECTIONS):
+        if x is None or load <= 0 or not np.isfinite(load):
+            return None
+        model = tangent_model(loop_energy(problem, load), x)
+        along = _coefficients(model, direction.displacement)
+        off = float(along @ _coefficients(model, x - guess))
+        off += direction.load * (load - guess_load) / settings.load_unit**2
+        settled = model.residual <= max(4 * model.rounding, 1e-13)
+        stuck = model.residual < RESIDUAL_TOLERANCE**1.5 and model.residual > 0.5 * best
+        if settled or stuck:
+            tangent = branch_direction(problem, model, direction, settings)
+            return BranchPoint(model, load, tangent, 0.0, corrections)
+        best = min(best, model.residual)
+        system = _bordered(problem, model, along, direction.load, settings)
+        try:
+            shift = np.linalg.solve(system, -np.append(model.gradient, off))
+        except np.linalg.LinAlgError:
+            return None
+        x = project_lengths(problem.loop, x + model.displacement(shift[:-1]))
+        load = load + float(shift[-1])
+    return None
+
+
+def branch_direction(
+    problem: Problem, model: TangentModel, last: Direction, settings: Settings
+) -> Direction:
+    """Return the branch's direction at an equilibrium, turned the way of `last`."""
+    along = _coefficients(model, last.displacement)
+    system = _bordered(problem, model, along, last.load, settings)
+    rhs = np.zeros(len(system))
+    rhs[-1] = 1.0
+    found = np.linalg.solve(system, rhs)
+    return make_direction(model, found[:-1], float(found[-1]), settings)
+
+
+def make_direction(
+    model: TangentModel, coefficients: FloatArray, load: float, settings: Settings
+) -> Direction:
+    """Return the direction with these tangent coefficients, scaled to unit arclength."""
+    size = np.sqrt(coefficients @ coefficients + (load / settings.load_unit) ** 2)
+    return Direction(model.displacement(coefficients / size), float(load / size))
+
+
+def load_derivative(problem: Problem, model: TangentModel) -> FloatArray:
+    """Return b = dg/dl (2 n_b - 6,), the film's force per unit of load on tangent space."""
+    force = 2 * problem.condensed.stiffness @ model.x
+    derivative: FloatArray = model.basis.T @ (force.ravel() / model.scale)
+    return derivative
+
+
+def _coefficients(model: TangentModel, displacement: FloatArray) -> FloatArray:
+    found: FloatArray = model.basis.T @ (displacement.ravel() * model.scale)
+    return found
+
+
+def _bordered(
+    problem: Problem,
+    model: TangentModel,
+    along: FloatArray,
+    load: float,
+    settings: Settings,
+) -> FloatArray:
+    """Return [[H, b], [along^T, load / unit^2]]: regular at folds, where H is not."""
+    m = len(along)
+    system = np.empty((m + 1, m + 1))
+    system[:m, :m] = model.hessian
+    system[:m, m] = load_derivative(problem, model)
+    system[m, :m] = along
+    system[m, m] = load / settings.load_unit**2
+    return system

@@ -1,0 +1,46 @@
+"""Tell the distinct states of a sweep apart, for pictures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import groupby
+
+from eulerplateau.output.table import Row
+
+# Below this the loop's normal curvature is a remnant of the transverse kick and of soft
+# modes near onset; a twisted state 1e-3 (relative) above its onset is well above it.
+_PLANAR_BELOW = 0.05
+# A planar film this round is called a disk, a longer one an ellipse (or an eight).
+_ROUND_ABOVE = 0.95
+
+
+def is_planar(row: Row) -> bool:
+    """Whether the film lies in a plane, judged by the integral of |kappa_n| ds."""
+    return row.abs_kappa_n < _PLANAR_BELOW
+
+
+def distinct_steps(rows: Sequence[Row]) -> list[int]:
+    """Return one step per distinct state of a sweep, in the order of the rows.
+
+    A state is a stretch of successive converged rows of one kind: not planar, or planar
+    with the same number of half turns across the waist and alike in being round or not.
+    A planar state is shown by its last row, the others by the row of largest integral of
+    |kappa_n| ds: a twisted saddle halfway rather than as the flat eight it ends in.
+    """
+    converged = [row for row in rows if row.converged]
+    states = [list(alike) for _, alike in groupby(converged, key=_kind)]
+    return [_shown(state).step for state in states]
+
+
+def _shown(state: list[Row]) -> Row:
+    if is_planar(state[0]):
+        return state[-1]
+    return max(state, key=lambda row: row.abs_kappa_n)
+
+
+def _kind(row: Row) -> tuple[bool, int, bool]:
+    if not is_planar(row):
+        return False, 0, False
+    half_turns = 0 if math.isnan(row.waist_twist) else round(abs(row.waist_twist) / 180.0)
+    return True, half_turns, row.aspect > _ROUND_ABOVE

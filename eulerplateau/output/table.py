@@ -1,0 +1,157 @@
+"""sweep.csv: one row per load, on disk as soon as it is computed."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, fields
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from eulerplateau.errors import OutputError
+from eulerplateau.solution import Status
+
+
+@dataclass(frozen=True)
+class Row:
+    """One load of a sweep; the fields, in this order, are the columns of sweep.csv.
+
+    Units: lengths L, energies alpha/L, max_turning and waist_twist degrees. None is an
+    empty cell ("not computed"); a float that came out as NaN or infinite is written `nan`
+    or `inf`, so that the two stay apart (pandas reads an empty cell and `nan` as NaN).
+    """
+
+    step: int
+    kL3_alpha: float  # noqa: N815 - the column's name
+    sigma_hat: float
+    energy: float
+    film_energy: float
+    bending_energy: float
+    abs_kappa_n: float
+    total_gauss_curvature: float
+    area: float
+    n_unstable: int | None
+    lowest_eigenvalue: float | None
+    residual: float
+    length_error: float
+    iterations: int
+    seconds: float
+    status: Status
+    max_turning: float
+    waist_twist: float
+    self_intersections: int | None
+    aspect: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether the row is an equilibrium to be trusted."""
+        return self.status is Status.CONVERGED
+
+
+COLUMNS = tuple(column.name for column in fields(Row))
+
+_INTEGERS = {"step", "n_unstable", "iterations", "self_intersections"}
+_MAY_BE_EMPTY = {"n_unstable", "lowest_eigenvalue", "self_intersections"}
+
+
+class RowWriter:
+    """Appends rows to a CSV file, each whole and on disk when `append` returns.
+
+    Creating it starts the file anew with the header. Raises OutputError if the file
+    cannot be written; a row that did not fit (disk full) is taken back.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            # Unbuffered: a row reaches the file in one write, and Ctrl-C finds no half.
+            self._file = path.open("wb", buffering=0)
+        except OSError as error:
+            raise OutputError(path, f"cannot be written: {error.strerror}") from None
+        try:
+            self._write_line(",".join(COLUMNS))
+        except OutputError:
+            self.close()
+            raise
+
+    def append(self, row: Row) -> None:
+        """Write `row`; floats by repr, so that they read back bit for bit."""
+        self._write_line(",".join(_cell(name, getattr(row, name)) for name in COLUMNS))
+
+    def close(self) -> None:
+        """Close the file; the rows are already on disk."""
+        self._file.close()
+
+    def __enter__(self) -> RowWriter:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _write_line(self, text: str) -> None:
+        line = f"{text}\n".encode("ascii")
+        start = self._file.tell()
+        try:
+            # A nearly full disk takes a part of the line without an error.
+            written = self._file.write(line)
+            if written < len(line):
+                self._file.write(line[written:])
+                if self._file.tell() < start + len(line):
+                    raise OSError(None, "no space left")
+        except OSError as error:
+            with suppress(OSError):
+                self._file.truncate(start)
+            problem = f"row cannot be written: {error.strerror}"
+            raise OutputError(self._path, problem) from None
+
+
+def read_rows(path: Path) -> list[Row]:
+    """Read a sweep.csv back, bit for bit.
+
+    Raises OutputError naming the line and column that is not as RowWriter wrote it, or if
+    the file cannot be read.
+    """
+    try:
+        header, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
+    except OSError as error:
+        raise OutputError(path, f"cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise OutputError(path, "is not a text file; expected a sweep.csv") from None
+    if header != ",".join(COLUMNS):
+        raise OutputError(path, f"the first line should be {','.join(COLUMNS)}")
+    return [_row(path, number, line) for number, line in enumerate(lines, start=2)]
+
+
+def _row(path: Path, number: int, line: str) -> Row:
+    cells = line.split(",")
+    if len(cells) != len(COLUMNS):
+        problem = f"line {number} has {len(cells)} cells, not {len(COLUMNS)}"
+        raise OutputError(path, problem)
+    values = {}
+    for name, text in zip(COLUMNS, cells, strict=True):
+        try:
+            values[name] = _value(name, text)
+        except ValueError as error:
+            raise OutputError(path, f"line {number}, {name}: {error}") from None
+    return Row(**values)
+
+
+def _cell(name: str, value: Any) -> str:
+    if value is None:
+        return ""
+    if name == "status":
+        return str(value.value)
+    return str(int(value)) if name in _INTEGERS else repr(float(value))
+
+
+def _value(name: str, text: str) -> Any:
+    if text == "" and name in _MAY_BE_EMPTY:
+        return None
+    if name == "status":
+        return Status(text)
+    return int(text) if name in _INTEGERS else float(text)

@@ -80,6 +80,10 @@ def _spec_error(
 ) -> SpecError:
     # A misspelt key is also reported as a missing one: the misspelling comes first.
     first = min(errors, key=lambda error: error["type"] != "extra_forbidden")
+    # The branch of a union that fails deepest inside is the one that was meant.
+    top = _key(first, data)
+    inside = [e for e in errors if _key(e, data).startswith((f"{top}.", f"{top}["))]
+    first = max([first, *inside], key=lambda error: len(error["loc"]))
     key = _key(first, data)
     if first["type"] == "extra_forbidden":
         problem = _unknown(str(first["loc"][-1]), _allowed_keys(model, first["loc"][:-1]))

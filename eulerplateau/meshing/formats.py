@@ -88,6 +88,7 @@ def read_meshio(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
     """Read any format of meshio, which prints and exits where it should raise."""
     import meshio
 
+    _refuse_half_a_header(path)
     with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
         content = meshio.read(path, file_format=_meshio_name(path))
     kinds = {block.type for block in content.cells} - {"vertex", "line"}
@@ -103,6 +104,16 @@ def write_meshio(path: Path, points: FloatArray, triangles: IntArray) -> None:
     mesh = meshio.Mesh(points, [("triangle", triangles)])
     with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
         mesh.write(path, file_format=_meshio_name(path))
+
+
+def _refuse_half_a_header(path: Path) -> None:
+    # meshio would wait for the rest of it for ever.
+    lines = [line.strip() for line in path.read_bytes().splitlines()]
+    if path.suffix.lower() == ".ply" and b"end_header" not in lines:
+        raise ValueError("the header has no end")
+    said = [line for line in lines[1:] if line and not line.startswith(b"#")]
+    if path.suffix.lower() == ".off" and not said:
+        raise ValueError("the header has no counts")
 
 
 def _meshio_name(path: Path) -> str:

@@ -115,7 +115,7 @@ class MeshSpec(Settings):
     Attributes
     ----------
     vertices : int
-        Number of vertices to aim at, met within 2 %.
+        Number of vertices to aim at, met within 2 % or one vertex.
     edge_length : float
         Instead of `vertices`: length of the loop's edges, in the polygon's units. With
         neither given, the mesh aims at 474 vertices, the paper's size.

@@ -26,6 +26,8 @@ from eulerplateau.tangent import TangentModel, tangent_model
 
 _CORRECTIONS = 12
 _EASY = 4  # corrections up to which the step may grow
+_STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
+_NOISE = 1e-10  # relative singular value below which forces are rounding
 
 
 @dataclass(frozen=True)
@@ -129,7 +131,23 @@ def advance(
     after = correct(problem, guess, load, point.direction, settings)
     if after is None:
         return None
-    return replace(after, arclength=point.arclength + step)
+    # A step that turns sharply has landed on a branch that crosses this one.
+    ahead = _inner(problem, point.direction, after.direction, settings)
+    return None if ahead < _STRAIGHT else replace(after, arclength=point.arclength + step)
+
+
+def along(
+    problem: Problem, point: BranchPoint, other: BranchPoint, settings: Settings
+) -> float:
+    """Return how far `other` lies from `point` along the branch's direction there."""
+    way = Direction(other.x - point.x, other.load - point.load)
+    return _inner(problem, point.direction, way, settings)
+
+
+def _inner(problem: Problem, a: Direction, b: Direction, settings: Settings) -> float:
+    product = np.sum(a.displacement * b.displacement, axis=1)
+    load = a.load * b.load / settings.load_unit**2
+    return float(problem.loop.mean_lengths @ product) + load
 
 
 def correct(
@@ -140,6 +158,26 @@ def correct(
     settings: Settings,
 ) -> BranchPoint | None:
     """Return the equilibrium in the hyperplane through the guess normal to `direction`."""
+    for smallest in (0.0, _NOISE):
+        found = _correct(problem, guess, load, direction, settings, smallest)
+        if found is not None:
+            return found
+    return None
+
+
+def _correct(
+    problem: Problem,
+    guess: FloatArray,
+    load: float,
+    direction: Direction,
+    settings: Settings,
+    smallest: float,
+) -> BranchPoint | None:
+    """Correct by Newton's method, still along singular vectors below `smallest`.
+
+    Close to a bifurcation the Hessian hardly resists its critical mode: along it, rounding
+    in the forces becomes motion, which a second attempt leaves out.
+    """
     x = project_lengths(problem.loop, guess)
     best = np.inf
     guess_load = load
@@ -147,8 +185,8 @@ def correct(
         if x is None or load <= 0 or not np.isfinite(load):
             return None
         model = tangent_model(loop_energy(problem, load), x)
-        along = _coefficients(model, direction.displacement)
-        off = float(along @ _coefficients(model, x - guess))
+        normal = _coefficients(model, direction.displacement)
+        off = float(normal @ _coefficients(model, x - guess))
         off += direction.load * (load - guess_load) / settings.load_unit**2
         settled = model.residual <= max(4 * model.rounding, 1e-13)
         stuck = model.residual < RESIDUAL_TOLERANCE**1.5 and model.residual > 0.5 * best
@@ -156,9 +194,10 @@ def correct(
             tangent = branch_direction(problem, model, direction, settings)
             return BranchPoint(model, load, tangent, 0.0, corrections)
         best = min(best, model.residual)
-        system = _bordered(problem, model, along, direction.load, settings)
+        system = _bordered(problem, model, normal, direction.load, settings)
+        rhs = -np.append(model.gradient, off)
         try:
-            shift = np.linalg.solve(system, -np.append(model.gradient, off))
+            shift = _solve(system, rhs, smallest)
         except np.linalg.LinAlgError:
             return None
         x = project_lengths(problem.loop, x + model.displacement(shift[:-1]))
@@ -166,24 +205,33 @@ def correct(
     return None
 
 
+def _solve(system: FloatArray, rhs: FloatArray, smallest: float) -> FloatArray:
+    if smallest == 0.0:
+        return np.linalg.solve(system, rhs).astype(np.float64)
+    return np.linalg.lstsq(system, rhs, rcond=smallest)[0].astype(np.float64)
+
+
 def branch_direction(
     problem: Problem, model: TangentModel, last: Direction, settings: Settings
 ) -> Direction:
-    """Return the branch's direction at an equilibrium, turned the way of `last`."""
-    along = _coefficients(model, last.displacement)
-    system = _bordered(problem, model, along, last.load, settings)
-    rhs = np.zeros(len(system))
-    rhs[-1] = 1.0
-    found = np.linalg.solve(system, rhs)
-    return make_direction(model, found[:-1], float(found[-1]), settings)
+    """Return the branch's direction at an equilibrium, turned the way of `last`.
+
+    The null vector of [H, b]: bordering by `last` would have to find one near `last`, also
+    where a step has landed on a branch that crosses.
+    """
+    slope = load_derivative(problem, model) * settings.load_unit
+    wide = np.column_stack([model.hessian, slope])
+    null = np.linalg.qr(wide.T, mode="complete")[0][:, -1]
+    found = make_direction(model, null[:-1], null[-1] * settings.load_unit, settings)
+    return found if _inner(problem, found, last, settings) >= 0 else found.reversed()
 
 
 def make_direction(
     model: TangentModel, coefficients: FloatArray, load: float, settings: Settings
 ) -> Direction:
     """Return the direction with these tangent coefficients, scaled to unit arclength."""
-    size = np.sqrt(coefficients @ coefficients + (load / settings.load_unit) ** 2)
-    return Direction(model.displacement(coefficients / size), float(load / size))
+    size = float(np.sqrt(coefficients @ coefficients + (load / settings.load_unit) ** 2))
+    return Direction(model.displacement(coefficients / size), load / size)
 
 
 def load_derivative(problem: Problem, model: TangentModel) -> FloatArray:
@@ -201,15 +249,15 @@ def _coefficients(model: TangentModel, displacement: FloatArray) -> FloatArray:
 def _bordered(
     problem: Problem,
     model: TangentModel,
-    along: FloatArray,
+    normal: FloatArray,
     load: float,
     settings: Settings,
 ) -> FloatArray:
-    """Return [[H, b], [along^T, load / unit^2]]: regular at folds, where H is not."""
-    m = len(along)
+    """Return [[H, b], [normal^T, load / unit^2]]: regular at folds, where H is not."""
+    m = len(normal)
     system = np.empty((m + 1, m + 1))
     system[:m, :m] = model.hessian
     system[:m, m] = load_derivative(problem, model)
-    system[m, :m] = along
+    system[m, :m] = normal
     system[m, m] = load / settings.load_unit**2
     return system

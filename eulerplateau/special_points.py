@@ -22,6 +22,7 @@ from eulerplateau.continuation import (
     Direction,
     Settings,
     advance,
+    along,
     correct,
     load_derivative,
     make_direction,
@@ -39,6 +40,12 @@ _NO_PART = 1e-3
 # to be told apart, close enough to be certain of landing on the wanted one.
 _SWITCHING_STEP = 2e-3
 _PRECISION = 1e-14
+# Relative difference of loads below which two modes are lost together.
+_TOGETHER = 1e-6
+# Part of a pure change of load that a direction may have and still count as level: near
+# enough to a pitchfork to cross over, not so near that its equations are singular.
+_LEVEL = 0.02
+_LOAD_ROUNDING = 4 * float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
@@ -51,6 +58,8 @@ class SpecialPoint:
     point : the equilibrium; at a bifurcation its direction is (q, 1), towards higher loads
     mode : (n_b, 3) float, the critical displacement phi
     eigenvalue : float, what is left of the critical eigenvalue
+    load_error : float
+        What rounding in the eigenvalue can have moved the load by.
     n_unstable : int, negative eigenvalues not counting the critical one
     multiplicity : int, eigenvalues that vanish together
     symmetry : which symmetries phi breaks
@@ -63,6 +72,7 @@ class SpecialPoint:
     point: BranchPoint
     mode: FloatArray
     eigenvalue: float
+    load_error: float
     n_unstable: int
     multiplicity: int
     symmetry: ModeSymmetry
@@ -73,26 +83,26 @@ def special_points(
     problem: Problem, before: BranchPoint, after: BranchPoint, settings: Settings
 ) -> Iterator[SpecialPoint]:
     """Yield the special points between two neighbouring points, in order of arclength."""
+    stretch = _Stretch(problem, before, after, settings)
     if before.direction.load * after.direction.load < 0:
-        found = _turn(problem, before, after, settings)
+        found = _turn(stretch)
         if found is not None:
             yield found
         return
-    crossed = sorted((before.stability.n_unstable, after.stability.n_unstable))
-    located = []
-    for index in range(*crossed):
-        point = _locate(problem, before, after, settings, partial(_eigenvalue, index))
-        if point is not None:
-            located.append((point, index))
+    located = [
+        (point, index)
+        for index in stretch.crossing
+        if (point := stretch.locate(partial(_eigenvalue, index))) is not None
+    ]
     located.sort(key=lambda found: found[0].arclength)
     last = None
     for point, index in located:
         # Symmetric loops lose several modes at once: one event, and one set of branches.
-        if last is not None and abs(point.load / last - 1) < 1e-6:
+        if last is not None and abs(point.load / last - 1) < _TOGETHER:
             continue
         last = point.load
-        together = sum(abs(other.load / last - 1) < 1e-6 for other, _ in located)
-        yield _describe(problem, point, index, together, settings)
+        together = sum(abs(other.load / last - 1) < _TOGETHER for other, _ in located)
+        yield _describe(stretch, point, index, together)
 
 
 def branches_from(
@@ -112,73 +122,105 @@ def branches_from(
             yield found
 
 
-def _locate(
-    problem: Problem,
-    before: BranchPoint,
-    after: BranchPoint,
-    settings: Settings,
-    test: Callable[[BranchPoint], float],
-) -> BranchPoint | None:
-    """Return the point between two where `test(point)` vanishes; None if it is lost."""
-    length = after.arclength - before.arclength
-    points = {0.0: before, length: after}
+@dataclass(frozen=True)
+class _Stretch:
+    """A stretch of branch between two neighbouring points."""
 
-    def value(step: float) -> float:
-        if step not in points:
-            point = advance(problem, before, step, settings)
-            if point is None:
-                raise ArithmeticError
-            points[step] = point
-        return float(test(points[step]))
+    problem: Problem
+    before: BranchPoint
+    after: BranchPoint
+    settings: Settings
 
-    try:
-        if value(0.0) * value(length) > 0:
+    @property
+    def length(self) -> float:
+        return self.after.arclength - self.before.arclength
+
+    @property
+    def crossing(self) -> range:
+        """Numbers of the eigenvalues that change sign."""
+        ends = (self.before.stability.n_unstable, self.after.stability.n_unstable)
+        return range(min(ends), max(ends))
+
+    def locate(self, test: Callable[[BranchPoint], float]) -> BranchPoint | None:
+        """Return the point where `test(point)` vanishes; None if it is lost.
+
+        All points are corrected in hyperplanes normal to the direction at `before`, from
+        a guess between known ones: at a bifurcation a point's own direction means nothing,
+        and a long step could land on the other branch.
+        """
+        reach = along(self.problem, self.before, self.after, self.settings)
+        points = {0.0: self.before, reach: self.after}
+
+        def value(step: float) -> float:
+            if step not in points:
+                points[step] = self._between(points, step)
+            return test(points[step])
+
+        try:
+            if value(0.0) * value(reach) > 0:
+                return None
+            root = brentq(value, 0.0, reach, xtol=_PRECISION, rtol=8.9e-16)
+            value(root)
+        except ArithmeticError:
             return None
-        root = brentq(value, 0.0, length, xtol=_PRECISION, rtol=8.9e-16)
-        value(root)
-    except ArithmeticError:
-        return None
-    return points[root]
+        return points[root]
+
+    def _between(self, points: dict[float, BranchPoint], step: float) -> BranchPoint:
+        below = max(known for known in points if known < step)
+        above = min(known for known in points if known > step)
+        low, high = points[below], points[above]
+        part = (step - below) / (above - below)
+        guess = low.x + part * (high.x - low.x)
+        load = low.load + part * (high.load - low.load)
+        found = correct(self.problem, guess, load, self.before.direction, self.settings)
+        if found is None:
+            raise ArithmeticError
+        return replace(found, arclength=self.before.arclength + step)
+
+    def load_error(self, point: BranchPoint, index: int) -> float:
+        """Return what rounding in an eigenvalue can have moved the load of its zero by."""
+        rise = _spectrum(self.after)[index] - _spectrum(self.before)[index]
+        doubt = abs(_spectrum(point)[index]) + point.stability.error_bound
+        arclength = doubt * self.length / max(abs(rise), doubt)
+        # At a fold the load is stationary, elsewhere it changes with the arclength.
+        return float(arclength * abs(point.direction.load) + _LOAD_ROUNDING * point.load)
 
 
-def _turn(
-    problem: Problem, before: BranchPoint, after: BranchPoint, settings: Settings
-) -> SpecialPoint | None:
+def _turn(stretch: _Stretch) -> SpecialPoint | None:
     """Return the fold, or the bifurcation the branch passes across at extreme load.
 
-    A pitchfork's side branch crosses the other branch where its own load is extreme. Its
-    equations are singular there, so the point is located on the other branch.
+    A pitchfork's side branch crosses the other branch where its own load is extreme. Both
+    its halves are mirror images, so there its critical eigenvalue touches zero, while at a
+    fold it crosses. Its equations are singular there, so the point is located on the other
+    branch.
     """
-    extreme = _locate(problem, before, after, settings, lambda p: p.direction.load)
-    if extreme is None:
+    level = _LEVEL * stretch.settings.load_unit
+    near = stretch.locate(partial(_climb, level))
+    if near is None:
         return None
-    values, vectors = extreme.model.eigen
-    index = int(np.abs(values).argmin())
-    if _part_along(problem, extreme, vectors[:, index]) > _NO_PART:
-        return _describe(problem, extreme, index, 1, settings)
-    ends = _across(problem, extreme, index, settings)
-    if ends is None:
+    index = int(np.abs(_spectrum(near)).argmin())
+    if stretch.crossing:
+        fold = stretch.locate(partial(_climb, 0.0))
+        return None if fold is None else _describe(stretch, fold, index, 1)
+    other = _across(stretch, near, index)
+    if other is None or len(other.crossing) != 1:
         return None
-    low, high = ends
-    crossed = sorted((low.stability.n_unstable, high.stability.n_unstable))
-    if crossed[0] == crossed[1]:
-        return None
-    point = _locate(problem, low, high, settings, partial(_eigenvalue, crossed[0]))
+    number = other.crossing[0]
+    point = other.locate(partial(_eigenvalue, number))
     if point is None:
         return None
-    return replace(_describe(problem, point, crossed[0], 1, settings), arrived=True)
+    return replace(_describe(other, point, number, 1), arrived=True)
 
 
-def _across(
-    problem: Problem, extreme: BranchPoint, index: int, settings: Settings
-) -> tuple[BranchPoint, BranchPoint] | None:
-    """Return two points of the other branch, on both sides of the crossing."""
+def _across(stretch: _Stretch, extreme: BranchPoint, index: int) -> _Stretch | None:
+    """Return the stretch of the other branch that holds the crossing."""
+    problem, settings = stretch.problem, stretch.settings
     direction = _through(problem, extreme, index, settings)
     back = _step_along(problem, extreme, direction, -_SWITCHING_STEP, settings)
     if back is None:
         return None
     forth = advance(problem, back, 2 * _SWITCHING_STEP, settings)
-    return None if forth is None else (back, forth)
+    return None if forth is None else _Stretch(problem, back, forth, settings)
 
 
 def _through(
@@ -207,6 +249,16 @@ def _step_along(
     return correct(problem, guess, point.load + step * direction.load, direction, settings)
 
 
+def _climb(level: float, point: BranchPoint) -> float:
+    """Return how fast the load rises along the branch, as zero where below `level`."""
+    rate = point.direction.load
+    return 0.0 if abs(rate) <= level else rate
+
+
+def _spectrum(point: BranchPoint) -> FloatArray:
+    return point.stability.eigenvalues
+
+
 def _eigenvalue(index: int, point: BranchPoint) -> float:
     """Return an eigenvalue, as zero where rounding decides its sign.
 
@@ -223,23 +275,20 @@ def _part_along(problem: Problem, point: BranchPoint, mode: FloatArray) -> float
 
 
 def _describe(
-    problem: Problem,
-    point: BranchPoint,
-    index: int,
-    multiplicity: int,
-    settings: Settings,
+    stretch: _Stretch, point: BranchPoint, index: int, multiplicity: int
 ) -> SpecialPoint:
+    problem, settings = stretch.problem, stretch.settings
     values, vectors = point.model.eigen
     mode = point.model.displacement(vectors[:, index])
     folds = _part_along(problem, point, vectors[:, index]) > _NO_PART
     if not folds:
-        through = _through(problem, point, index, settings)
-        point = replace(point, direction=through)
+        point = replace(point, direction=_through(problem, point, index, settings))
     return SpecialPoint(
         kind=FOLD if folds else BIFURCATION,
         point=point,
         mode=mode,
         eigenvalue=float(values[index]),
+        load_error=stretch.load_error(point, index),
         n_unstable=index,
         multiplicity=multiplicity,
         symmetry=mode_symmetry(point.x, mode),

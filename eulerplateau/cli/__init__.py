@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 import click
 
 from eulerplateau import __version__
+from eulerplateau.cli.branches import branches
 from eulerplateau.cli.mesh import mesh
 from eulerplateau.cli.sweep import sweep
 from eulerplateau.errors import EulerPlateauError, OutputError
@@ -28,6 +29,7 @@ def commands() -> None:
     """Shapes of elastic loops spanned by soap films: the Euler-Plateau problem."""
 
 
+commands.add_command(branches)
 commands.add_command(mesh)
 commands.add_command(sweep)
 

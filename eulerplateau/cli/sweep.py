@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import itertools
-import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from eulerplateau.cli.settings import load_with, parse_setting
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError, SpecError
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def sweep(
     Writes a run folder: sweep.csv (one row per load), shapes/*.vtp and sweep.pvd (for
     ParaView), run.json, diagram.png.
     """
-    values = [_setting(text) for text in settings]
+    values = [parse_setting(text) for text in settings]
     if solver is not None:
         values.append(("solver.name", [solver]))
     code = 0
@@ -72,23 +72,10 @@ def sweep(
     return code
 
 
-def _setting(text: str) -> tuple[str, list[Any]]:
-    """Parse KEY=VALUE,VALUE: TOML values, or bare words."""
-    key, equals, given = text.partition("=")
-    if not equals or not key:
-        raise click.BadParameter(f"{text!r} should be KEY=VALUE,...", param_hint="--set")
-    try:
-        return key, tomllib.loads(f"values = [{given}]")["values"]
-    except tomllib.TOMLDecodeError:
-        return key, given.split(",")
-
-
 def _planned(
     specs: tuple[Path, ...], settings: list[tuple[str, list[Any]]], out: Path | None
 ) -> list[tuple[RunSpec, Path]]:
     """Return every run and its folder; all specifications are checked before any run."""
-    from eulerplateau.runs.spec import load_run
-
     keys = [key for key, _ in settings]
     varied = {key for key, values in settings if len(values) > 1}
     combinations = list(itertools.product(*(values for _, values in settings)))
@@ -97,16 +84,13 @@ def _planned(
     for path in specs:
         for combination in combinations:
             overrides = dict(zip(keys, combination, strict=True))
-            if "mesh.file" in overrides:
-                # Given on the command line, so relative to where the command was given.
-                overrides["mesh.file"] = str(Path(overrides["mesh.file"]).absolute())
             name = path.stem + "".join(
                 f"-{key.rpartition('.')[2]}={_word(value)}"
                 for key, value in zip(keys, combination, strict=True)
                 if key in varied
             )
             folder = path.parent / name if out is None else out / name if many else out
-            runs.append((load_run(path, overrides), folder))
+            runs.append((load_with(path, overrides), folder))
     folders = [folder for _, folder in runs]
     if len(set(folders)) < len(folders):
         raise SpecError("RUN.toml", "two runs would share a folder: rename a file")

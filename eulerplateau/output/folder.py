@@ -23,6 +23,9 @@ _MARK = {"program": "eulerplateau"}
 _OUR_FILES = (
     "sweep.csv",
     "sweep.pvd",
+    "branches.csv",
+    "branches.pvd",
+    "special_points.csv",
     "diagram.png",
     "shapes/shape_*.vtp",
     "pictures/shape_*.png",
@@ -46,14 +49,21 @@ class RunFolder:
     leaves nothing half done, and a row in sweep.csv means its shape is there.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, name: str, row_type: type[Row]) -> None:
         self.path = path
         self._shapes: list[tuple[int, float, str]] = []
-        self._rows = RowWriter(path / "sweep.csv")
+        self._series = path / f"{name}.pvd"
+        self._rows = RowWriter(path / f"{name}.csv", row_type)
 
     @classmethod
-    def create(cls, path: Path, summary: Mapping[str, object]) -> RunFolder:
-        """Start a run in `path` with `summary` as its run.json.
+    def create(
+        cls,
+        path: Path,
+        summary: Mapping[str, object],
+        name: str = "sweep",
+        row_type: type[Row] = Row,
+    ) -> RunFolder:
+        """Start a run in `path` with `summary` as its run.json; its table is `name`.csv.
 
         An earlier run there is removed, which is to say its rows, shapes and pictures; a
         folder that holds anything but a run, or a path that cannot be made a folder,
@@ -67,7 +77,7 @@ class RunFolder:
             problem = f"cannot be made a run folder: {error.strerror}"
             raise OutputError(path, problem) from None
         _write_summary(path, summary)
-        return cls(path)
+        return cls(path, name, row_type)
 
     def record(
         self,
@@ -92,7 +102,7 @@ class RunFolder:
             modes=modes,
         )
         self._shapes.append((row.step, row.kL3_alpha, name))
-        write_series(self.path / "sweep.pvd", self._shapes)
+        write_series(self._series, self._shapes)
         self._rows.append(row)
 
     def write_summary(self, summary: Mapping[str, object]) -> None:

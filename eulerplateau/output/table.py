@@ -1,4 +1,4 @@
-"""sweep.csv: one row per load, on disk as soon as it is computed."""
+"""Tables of rows that are on disk as soon as they are computed: sweep.csv and others."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
 from eulerplateau.errors import OutputError
 from eulerplateau.solution import Status
@@ -48,10 +48,34 @@ class Row:
         return self.status is Status.CONVERGED
 
 
+@dataclass(frozen=True)
+class BranchRow(Row):
+    """One point of a branch: a row of branches.csv, the columns of sweep.csv and these.
+
+    Attributes
+    ----------
+    branch : int, counted from 0
+    origin : int, the number of the special point the branch starts from; None for the first
+    special : int, the number of this special point; None for a regular point
+    arclength : float, from the branch's first point
+    """
+
+    branch: int
+    origin: int | None
+    special: int | None
+    arclength: float
+
+
 COLUMNS = tuple(column.name for column in fields(Row))
 
-_INTEGERS = {"step", "n_unstable", "iterations", "self_intersections"}
-_MAY_BE_EMPTY = {"n_unstable", "lowest_eigenvalue", "self_intersections"}
+_INTEGERS = {
+    "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special"
+}  # fmt: skip
+_MAY_BE_EMPTY = {
+    "n_unstable", "lowest_eigenvalue", "self_intersections", "origin", "special"
+}  # fmt: skip
+
+RowType = TypeVar("RowType", bound=Row)
 
 
 class RowWriter:
@@ -61,22 +85,25 @@ class RowWriter:
     cannot be written; a row that did not fit (disk full) is taken back.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, row_type: type[Row] = Row) -> None:
         self._path = path
+        self._columns = [column.name for column in fields(row_type)]
         try:
             # Unbuffered: a row reaches the file in one write, and Ctrl-C finds no half.
             self._file = path.open("wb", buffering=0)
         except OSError as error:
             raise OutputError(path, f"cannot be written: {error.strerror}") from None
         try:
-            self._write_line(",".join(COLUMNS))
+            self._write_line(",".join(self._columns))
         except OutputError:
             self.close()
             raise
 
     def append(self, row: Row) -> None:
         """Write `row`; floats by repr, so that they read back bit for bit."""
-        self._write_line(",".join(_cell(name, getattr(row, name)) for name in COLUMNS))
+        self._write_line(
+            ",".join(_cell(name, getattr(row, name)) for name in self._columns)
+        )
 
     def close(self) -> None:
         """Close the file; the rows are already on disk."""
@@ -110,8 +137,8 @@ class RowWriter:
             raise OutputError(self._path, problem) from None
 
 
-def read_rows(path: Path) -> list[Row]:
-    """Read a sweep.csv back, bit for bit.
+def read_rows(path: Path, row_type: type[RowType] = Row) -> list[RowType]:  # type: ignore[assignment]
+    """Read a table of rows back, bit for bit.
 
     Raises OutputError naming the line and column that is not as RowWriter wrote it, or if
     the file cannot be read.
@@ -122,23 +149,27 @@ def read_rows(path: Path) -> list[Row]:
         raise OutputError(path, f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise OutputError(path, "is not a text file; expected a sweep.csv") from None
-    if header != ",".join(COLUMNS):
-        raise OutputError(path, f"the first line should be {','.join(COLUMNS)}")
-    return [_row(path, number, line) for number, line in enumerate(lines, start=2)]
+    columns = [column.name for column in fields(row_type)]
+    if header != ",".join(columns):
+        raise OutputError(path, f"the first line should be {','.join(columns)}")
+    return [
+        row_type(**_values(path, columns, number, line))
+        for number, line in enumerate(lines, start=2)
+    ]
 
 
-def _row(path: Path, number: int, line: str) -> Row:
+def _values(path: Path, columns: list[str], number: int, line: str) -> dict[str, Any]:
     cells = line.split(",")
-    if len(cells) != len(COLUMNS):
-        problem = f"line {number} has {len(cells)} cells, not {len(COLUMNS)}"
+    if len(cells) != len(columns):
+        problem = f"line {number} has {len(cells)} cells, not {len(columns)}"
         raise OutputError(path, problem)
     values = {}
-    for name, text in zip(COLUMNS, cells, strict=True):
+    for name, text in zip(columns, cells, strict=True):
         try:
             values[name] = _value(name, text)
         except ValueError as error:
             raise OutputError(path, f"line {number}, {name}: {error}") from None
-    return Row(**values)
+    return values
 
 
 def _cell(name: str, value: Any) -> str:

@@ -134,6 +134,25 @@ class SolverSettings(Settings):
     max_iterations: int | None = Field(default=None, ge=1)
 
 
+class BranchSettings(Settings):
+    """Where `eulerplateau branches` ends; a sweep does not use it.
+
+    Attributes
+    ----------
+    load_min, load_max : float
+        The window of loads k L^3 / alpha; by default that of sweep.loads.
+    special_points : int
+        New branches are followed from the first so many folds and bifurcations.
+    unstable_modes : int
+        A branch is left where more modes than this are unstable.
+    """
+
+    load_min: float | None = Field(default=None, gt=0)
+    load_max: float | None = Field(default=None, gt=0)
+    special_points: int = Field(default=8, ge=0)
+    unstable_modes: int = Field(default=3, ge=0)
+
+
 class RunSpec(Settings):
     """One run: a mesh, a film, a loop, a start, the loads, a solver."""
 
@@ -143,6 +162,7 @@ class RunSpec(Settings):
     start: StartSettings = StartSettings()
     sweep: SweepSettings
     solver: SolverSettings = SolverSettings()
+    branches: BranchSettings = BranchSettings()
 
     @model_validator(mode="after")
     def _loads_are_finite(self) -> RunSpec:

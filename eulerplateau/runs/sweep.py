@@ -71,7 +71,7 @@ def carry_out(
         try:
             for step, found in enumerate(equilibria(spec, mesh, problem)):
                 shape = measure(mesh, found.x, path_across)
-                row = _row(step, found, problem, asdict(shape))
+                row = make_row(step, found, problem, asdict(shape))
                 folder.record(row, mesh, found.x)
                 rows.append(row)
                 on_row(row)
@@ -162,7 +162,8 @@ def _totals(rows: Sequence[Row], seconds: float) -> dict[str, Any]:
     }
 
 
-def _row(step: int, found: Equilibrium, problem: Problem, shape: dict[str, Any]) -> Row:
+def make_row(step: int, found: Equilibrium, problem: Problem, shape: dict[str, Any]) -> Row:
+    """Return the row of an equilibrium; `shape` holds the fields of its Measures."""
     return Row(
         step=step,
         kL3_alpha=found.load,

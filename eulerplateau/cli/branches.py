@@ -1,0 +1,86 @@
+"""`eulerplateau branches`: the whole bifurcation diagram of one run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from eulerplateau.cli.settings import load_single
+
+if TYPE_CHECKING:
+    from eulerplateau.output.table import BranchRow
+    from eulerplateau.runs.branches import Exploration
+    from eulerplateau.runs.spec import RunSpec
+
+
+@click.command()
+@click.argument("spec", metavar="RUN.toml", type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="The folder to write to. Default: beside RUN.toml, with its name and -branches.",
+)
+@click.option(
+    "--set",
+    "settings",
+    metavar="KEY=VALUE",
+    multiple=True,
+    help="Replace a key of the specification, as in branches.special_points=3.",
+)
+@click.option("--pictures/--no-pictures", default=True, help="Draw branches.png (default).")
+@click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
+def branches(
+    spec: Path, out: Path | None, settings: tuple[str, ...], pictures: bool, quiet: bool
+) -> None:
+    """Follow the branches of equilibria of RUN.toml, stable and unstable, through folds.
+
+    Writes branches.csv (one row per point), special_points.csv (folds and bifurcations,
+    their loads located by an eigenvalue's crossing), shapes/*.vtp with the critical
+    modes, branches.pvd (for ParaView), run.json, branches.png.
+    """
+    run = load_single(spec, settings)
+    folder = out or spec.with_name(f"{spec.stem}-branches")
+    result = _explore(run, folder, quiet)
+    drawn = ["branches.csv", "special_points.csv", "branches.pvd"]
+    if pictures:
+        from eulerplateau.branch_plots import draw_branches
+
+        if draw_branches(folder):
+            drawn.append("branches.png")
+    if not quiet:
+        _report(result, drawn)
+
+
+def _explore(run: RunSpec, folder: Path, quiet: bool) -> Exploration:
+    from eulerplateau.runs.branches import carry_out
+
+    if quiet:
+        return carry_out(run, folder)
+    from tqdm import tqdm
+
+    with tqdm(desc=folder.name, unit="point", dynamic_ncols=True) as bar:
+
+        def show(row: BranchRow) -> None:
+            bar.set_postfix_str(
+                f"branch {row.branch}, kL3/alpha {row.kL3_alpha:g}, "
+                f"<|kappa_n|> {row.abs_kappa_n:.3g}, {row.n_unstable} unstable"
+            )
+            bar.update()
+
+        return carry_out(run, folder, show)
+
+
+def _report(result: Exploration, drawn: list[str]) -> None:
+    for point in result.special:
+        click.echo(
+            f"{point['kind']} {point['number']} at kL3/alpha = {point['kL3_alpha']:.8g} "
+            f"+- {point['kL3_alpha_error']:.1g} on branch {point['branch']}, breaks: "
+            f"{point['breaks'] or 'nothing'}"
+        )
+    number = 1 + max(row.branch for row in result.rows)
+    click.echo(
+        f"{result.folder}: {number} branches, {len(result.rows)} points in "
+        f"{result.seconds:.1f} s: {', '.join(drawn)}"
+    )

@@ -1,0 +1,132 @@
+"""The architecture: imports point only down the layers; what is not used is not loaded."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from importlib.util import resolve_name
+from pathlib import Path
+
+import pytest
+
+import eulerplateau
+
+# The layers of docs/architecture.md from the bottom up: modules and subpackages of
+# eulerplateau. A new one needs a place here.
+LAYERS = (
+    "__init__ errors kernels mesh parameters planar solution",
+    "condensation curvature dissection film inextensible intersections loop "
+    "measures meshing scaling symmetry",
+    "cell problem tangent",
+    "conjugate_gradient newton stability trust_region",
+    "continuation exploration special_points",
+    "branch_plots ensemble gallery output plots render runs",
+    "__main__ cli",
+)
+LEVEL = {unit: level for level, units in enumerate(LAYERS) for unit in units.split()}
+
+NUMERICS = {"numba", "numpy", "scipy"}
+HEAVY = {"gmsh", "matplotlib", "meshio", "pyvista", "trimesh", "vtk", "vtkmodules"}
+
+ROOT = Path(eulerplateau.__file__).parent
+
+
+def module_name(path: Path) -> str:
+    """Return the dotted name of a file of the package."""
+    parts = path.relative_to(ROOT.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+FILES = {module_name(path): path for path in sorted(ROOT.rglob("*.py"))}
+
+
+LIBRARY = ", ".join(module for module in FILES if not module.endswith("__main__"))
+
+# Arguments of python, and what the run must not load.
+LIGHT_RUNS = [
+    pytest.param(["-c", "import eulerplateau"], NUMERICS | HEAVY, id="package"),
+    pytest.param(["-c", f"import {LIBRARY}"], HEAVY, id="every module"),
+    pytest.param(["-m", "eulerplateau", "--help"], NUMERICS | HEAVY, id="help"),
+]
+
+
+def unit(module: str) -> str:
+    """Return the module or subpackage of eulerplateau that a dotted name belongs to."""
+    return [*module.split("."), "__init__"][1]
+
+
+def imports(node: ast.AST, package: str) -> Iterator[str]:
+    """Yield the dotted names, module or not, that one statement imports."""
+    if isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+    elif isinstance(node, ast.ImportFrom):
+        base = resolve_name("." * node.level + (node.module or ""), package)
+        yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def targets(module: str) -> set[str]:
+    """Return the modules of the package that `module` imports, in its functions too."""
+    path = FILES[module]
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    names = (
+        name
+        for node in ast.walk(ast.parse(path.read_text()))
+        for name in imports(node, package)
+        if name.split(".")[0] == "eulerplateau"
+    )
+    return {name if name in FILES else name.rpartition(".")[0] for name in names}
+
+
+def loaded_at_import(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield what runs when a module is imported: not functions, not `if TYPE_CHECKING`."""
+    for child in ast.iter_child_nodes(node):
+        typing_only = isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test)
+        if not isinstance(child, ast.FunctionDef | ast.Lambda) and not typing_only:
+            yield child
+            yield from loaded_at_import(child)
+
+
+def test_every_module_has_a_level() -> None:
+    assert {unit(module) for module in FILES} <= LEVEL.keys()
+
+
+@pytest.mark.parametrize("module", FILES)
+def test_imports_never_point_up(module: str) -> None:
+    level = LEVEL[unit(module)]
+    assert {target for target in targets(module) if LEVEL[unit(target)] > level} == set()
+
+
+def test_imports_never_run_in_a_circle() -> None:
+    # Raises CycleError, which names the circle.
+    TopologicalSorter({module: targets(module) for module in FILES}).prepare()
+
+
+@pytest.mark.parametrize("module", FILES)
+def test_heavy_libraries_are_imported_where_they_are_used(module: str) -> None:
+    tree = ast.parse(FILES[module].read_text())
+    names = {name for node in loaded_at_import(tree) for name in imports(node, module)}
+    assert {name.split(".")[0] for name in names} & HEAVY == set()
+
+
+@pytest.mark.parametrize(("arguments", "unwanted"), LIGHT_RUNS)
+def test_a_run_does_not_load_what_it_does_not_use(
+    arguments: list[str], unwanted: set[str]
+) -> None:
+    run = subprocess.run(
+        [sys.executable, "-X", "importtime", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    # Lines of "import time: self [us] | cumulative | indented name".
+    loaded = {
+        line.rpartition("|")[2].strip().split(".")[0]
+        for line in run.stderr.splitlines()
+        if line.startswith("import time:")
+    }
+    assert "eulerplateau" in loaded
+    assert loaded & unwanted == set()

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 
 class EulerPlateauError(Exception):
-    """Base of every error a user can cause; `exit_code` is what the shell sees."""
+    """Base of every error a user can cause; `exit_code` is what the shell sees.
+
+    The arguments of a subclass are those of the exception, so that it survives pickling
+    on its way out of a worker process.
+    """
 
     exit_code = 1
 
@@ -19,8 +23,11 @@ class SpecError(EulerPlateauError):
     exit_code = 2
 
     def __init__(self, key: str, problem: str) -> None:
-        super().__init__(f"{key}: {problem}")
+        super().__init__(key, problem)
         self.key = key
+
+    def __str__(self) -> str:
+        return "{}: {}".format(*self.args)
 
 
 class MeshError(EulerPlateauError):
@@ -35,10 +42,13 @@ class MeshError(EulerPlateauError):
     def __init__(
         self, kind: str, index: int | tuple[int, int] | None, problem: str
     ) -> None:
-        where = kind if index is None else f"{kind} {index}"
-        super().__init__(f"{where}: {problem}")
+        super().__init__(kind, index, problem)
         self.kind = kind
         self.index = index
+
+    def __str__(self) -> str:
+        kind, index, problem = self.args
+        return f"{kind}: {problem}" if index is None else f"{kind} {index}: {problem}"
 
 
 class OutputError(EulerPlateauError):
@@ -47,8 +57,11 @@ class OutputError(EulerPlateauError):
     exit_code = 5
 
     def __init__(self, path: object, problem: str) -> None:
-        super().__init__(f"{path}: {problem}")
+        super().__init__(path, problem)
         self.path = path
+
+    def __str__(self) -> str:
+        return "{}: {}".format(*self.args)
 
 
 NOT_CONVERGED_EXIT_CODE = 4

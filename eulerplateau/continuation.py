@@ -27,7 +27,7 @@ from eulerplateau.tangent import TangentModel, tangent_model
 _CORRECTIONS = 12
 _EASY = 4  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
-_NOISE = 1e-10  # relative singular value below which forces are rounding
+NOISE = 1e-10  # relative singular value below which forces are rounding
 
 
 @dataclass(frozen=True)
@@ -156,9 +156,13 @@ def correct(
     load: float,
     direction: Direction,
     settings: Settings,
+    attempts: tuple[float, ...] = (0.0, NOISE),
 ) -> BranchPoint | None:
-    """Return the equilibrium in the hyperplane through the guess normal to `direction`."""
-    for smallest in (0.0, _NOISE):
+    """Return the equilibrium in the hyperplane through the guess normal to `direction`.
+
+    Each of the attempts keeps still along singular vectors of relative value below it.
+    """
+    for smallest in attempts:
         found = _correct(problem, guess, load, direction, settings, smallest)
         if found is not None:
             return found
@@ -186,8 +190,8 @@ def _correct(
             return None
         model = tangent_model(loop_energy(problem, load), x)
         normal = _coefficients(model, direction.displacement)
-        off = float(normal @ _coefficients(model, x - guess))
-        off += direction.load * (load - guess_load) / settings.load_unit**2
+        way = Direction(x - guess, load - guess_load)
+        off = _inner(problem, direction, way, settings)
         settled = model.residual <= max(4 * model.rounding, 1e-13)
         stuck = model.residual < RESIDUAL_TOLERANCE**1.5 and model.residual > 0.5 * best
         if settled or stuck:

@@ -108,7 +108,9 @@ def _trace(
         yield Visit(branch, lead.origin, after)
         if after.stability.n_unstable > limits.unstable_modes:
             return
-        before = after
+        # Where rounding hides an eigenvalue's sign, the next point decides.
+        if not after.stability.n_neutral or before.stability.n_neutral:
+            before = after
 
 
 def _number(special: SpecialPoint, found: list[SpecialPoint]) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby, pairwise
@@ -10,22 +9,28 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eulerplateau.output.child import draw_in_child
-from eulerplateau.output.files import write_whole
+from eulerplateau.output.figure import (
+    ABS_KAPPA_N,
+    BLUE,
+    LOAD,
+    ORANGE,
+    VERMILION,
+    enlarged,
+    frame,
+    new_figure,
+    save,
+)
 from eulerplateau.output.states import is_planar
 from eulerplateau.output.table import Row, read_rows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Okabe and Ito's colours: told apart by the colour-blind and, by lightness, in grey.
-_UP, _DOWN, _NOT_CONVERGED = "#0072B2", "#E69F00", "#D55E00"
-_DPI = 200
+_UP, _DOWN, _NOT_CONVERGED = BLUE, ORANGE, VERMILION
 _SECONDS = 120.0
-# A window of twist narrower than this part of all loads gets a column of its own.
-_NARROW = 0.2
 
 _PANELS: tuple[tuple[str, Callable[[Row], float]], ...] = (
-    (r"$\langle|\kappa_n|\rangle=\oint|\kappa_n|\,ds$", lambda row: row.abs_kappa_n),
+    (ABS_KAPPA_N, lambda row: row.abs_kappa_n),
     (r"$-\langle K\rangle=-\int K\,dA$", lambda row: -row.total_gauss_curvature),
     ("waist twist (deg)", lambda row: abs(row.waist_twist)),
     ("short / long axis", lambda row: row.aspect),
@@ -46,17 +51,15 @@ def plot_diagram(rows: Sequence[Row], path: Path) -> None:
     the first band is narrow, a second column enlarges it. Raises OutputError if the file
     cannot be written.
     """
-    from matplotlib.figure import Figure
-
     bands = _bands(rows)
     window = _window(rows, bands)
     columns = 1 if window is None else 2
-    figure = Figure(figsize=(3.4 * columns + 0.6, 7.2), layout="constrained")
+    figure = new_figure(columns)
     axes = figure.subplots(len(_PANELS), columns, sharex="col", sharey="row", squeeze=False)
     for column in axes.T:
         for ax, (_, quantity) in zip(column, _PANELS, strict=True):
             _draw(ax, rows, quantity, bands)
-        column[-1].set_xlabel(r"$kL^3/\alpha$")
+        column[-1].set_xlabel(LOAD)
     for ax, (label, _) in zip(axes[:, 0], _PANELS, strict=True):
         ax.set_ylabel(label)
     axes[2, 0].set_yticks([0, 90, 180])
@@ -66,9 +69,7 @@ def plot_diagram(rows: Sequence[Row], path: Path) -> None:
     figure.align_ylabels()
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False)
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=_DPI)
-    write_whole(path, content.getvalue())
+    save(figure, path)
 
 
 def _draw(
@@ -108,8 +109,7 @@ def _draw(
             color=_NOT_CONVERGED,
             label="not converged",
         )
-    ax.margins(x=0.03, y=0.08)
-    ax.tick_params(direction="in", top=True, right=True)
+    frame(ax)
 
 
 def _legs(rows: Sequence[Row]) -> list[tuple[bool, list[Row]]]:
@@ -145,10 +145,7 @@ def _window(
         return None
     low, high = min(bands)
     loads = [row.kL3_alpha for row in rows]
-    if high == max(loads) or not 0 < high - low < _NARROW * (max(loads) - min(loads)):
-        return None
-    margin = 0.4 * (high - low)
-    return low - margin, high + margin
+    return None if high == max(loads) else enlarged(low, high, loads)
 
 
 if __name__ == "__main__":

@@ -10,25 +10,24 @@ up to a mixture that symmetry forbids at a pitchfork (Keller 1977; Seydel 2010, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
 
 from eulerplateau.continuation import (
     BranchPoint,
     Direction,
     Settings,
     advance,
-    along,
     correct,
     load_derivative,
     make_direction,
 )
 from eulerplateau.mesh import FloatArray
 from eulerplateau.problem import Problem
+from eulerplateau.stretch import Stretch, eigenvalue, load_rate
 from eulerplateau.symmetry import ModeSymmetry, mode_symmetry
 
 FOLD, BIFURCATION = "fold", "bifurcation"
@@ -39,13 +38,13 @@ _NO_PART = 1e-3
 # Arclength at which a branch is left for another: far enough for two distinct solutions
 # to be told apart, close enough to be certain of landing on the wanted one.
 _SWITCHING_STEP = 2e-3
-_PRECISION = 1e-14
 # Relative difference of loads below which two modes are lost together.
 _TOGETHER = 1e-6
 # Part of a pure change of load that a direction may have and still count as level: near
 # enough to a pitchfork to cross over, not so near that its equations are singular.
 _LEVEL = 0.02
-_LOAD_ROUNDING = 4 * float(np.finfo(np.float64).eps)
+# Where a branch is almost level all along: the part of its steepest that counts as level.
+_LEVELLED = 0.25
 
 
 @dataclass(frozen=True)
@@ -83,7 +82,7 @@ def special_points(
     problem: Problem, before: BranchPoint, after: BranchPoint, settings: Settings
 ) -> Iterator[SpecialPoint]:
     """Yield the special points between two neighbouring points, in order of arclength."""
-    stretch = _Stretch(problem, before, after, settings)
+    stretch = Stretch(problem, before, after, settings)
     if before.direction.load * after.direction.load < 0:
         found = _turn(stretch)
         if found is not None:
@@ -92,17 +91,20 @@ def special_points(
     located = [
         (point, index)
         for index in stretch.crossing
-        if (point := stretch.locate(partial(_eigenvalue, index))) is not None
+        if (point := stretch.locate(partial(eigenvalue, index))) is not None
     ]
-    located.sort(key=lambda found: found[0].arclength)
+    located.sort(key=lambda pair: pair[0].arclength)
     last = None
-    for point, index in located:
+    for point, _ in located:
         # Symmetric loops lose several modes at once: one event, and one set of branches.
         if last is not None and abs(point.load / last - 1) < _TOGETHER:
             continue
         last = point.load
-        together = sum(abs(other.load / last - 1) < _TOGETHER for other, _ in located)
-        yield _describe(stretch, point, index, together)
+        together = [i for other, i in located if abs(other.load / last - 1) < _TOGETHER]
+        found = _describe(stretch, point, min(together), len(together))
+        # The eigenvalue of an all but free rotation wanders about zero: no event.
+        if found.load_error < _TOGETHER * point.load:
+            yield found
 
 
 def branches_from(
@@ -119,74 +121,10 @@ def branches_from(
     for direction in (away, away.reversed()):
         found = _step_along(problem, special.point, direction, _SWITCHING_STEP, settings)
         if found is not None:
-            yield found
+            yield replace(found, arclength=_SWITCHING_STEP)
 
 
-@dataclass(frozen=True)
-class _Stretch:
-    """A stretch of branch between two neighbouring points."""
-
-    problem: Problem
-    before: BranchPoint
-    after: BranchPoint
-    settings: Settings
-
-    @property
-    def length(self) -> float:
-        return self.after.arclength - self.before.arclength
-
-    @property
-    def crossing(self) -> range:
-        """Numbers of the eigenvalues that change sign."""
-        ends = (self.before.stability.n_unstable, self.after.stability.n_unstable)
-        return range(min(ends), max(ends))
-
-    def locate(self, test: Callable[[BranchPoint], float]) -> BranchPoint | None:
-        """Return the point where `test(point)` vanishes; None if it is lost.
-
-        All points are corrected in hyperplanes normal to the direction at `before`, from
-        a guess between known ones: at a bifurcation a point's own direction means nothing,
-        and a long step could land on the other branch.
-        """
-        reach = along(self.problem, self.before, self.after, self.settings)
-        points = {0.0: self.before, reach: self.after}
-
-        def value(step: float) -> float:
-            if step not in points:
-                points[step] = self._between(points, step)
-            return test(points[step])
-
-        try:
-            if value(0.0) * value(reach) > 0:
-                return None
-            root = brentq(value, 0.0, reach, xtol=_PRECISION, rtol=8.9e-16)
-            value(root)
-        except ArithmeticError:
-            return None
-        return points[root]
-
-    def _between(self, points: dict[float, BranchPoint], step: float) -> BranchPoint:
-        below = max(known for known in points if known < step)
-        above = min(known for known in points if known > step)
-        low, high = points[below], points[above]
-        part = (step - below) / (above - below)
-        guess = low.x + part * (high.x - low.x)
-        load = low.load + part * (high.load - low.load)
-        found = correct(self.problem, guess, load, self.before.direction, self.settings)
-        if found is None:
-            raise ArithmeticError
-        return replace(found, arclength=self.before.arclength + step)
-
-    def load_error(self, point: BranchPoint, index: int) -> float:
-        """Return what rounding in an eigenvalue can have moved the load of its zero by."""
-        rise = _spectrum(self.after)[index] - _spectrum(self.before)[index]
-        doubt = abs(_spectrum(point)[index]) + point.stability.error_bound
-        arclength = doubt * self.length / max(abs(rise), doubt)
-        # At a fold the load is stationary, elsewhere it changes with the arclength.
-        return float(arclength * abs(point.direction.load) + _LOAD_ROUNDING * point.load)
-
-
-def _turn(stretch: _Stretch) -> SpecialPoint | None:
+def _turn(stretch: Stretch) -> SpecialPoint | None:
     """Return the fold, or the bifurcation the branch passes across at extreme load.
 
     A pitchfork's side branch crosses the other branch where its own load is extreme. Both
@@ -194,25 +132,35 @@ def _turn(stretch: _Stretch) -> SpecialPoint | None:
     fold it crosses. Its equations are singular there, so the point is located on the other
     branch.
     """
-    level = _LEVEL * stretch.settings.load_unit
-    near = stretch.locate(partial(_climb, level))
+    ends = stretch.before.direction.load, stretch.after.direction.load
+    level = min(_LEVEL * stretch.settings.load_unit, _LEVELLED * max(np.abs(ends)))
+    near = stretch.locate(partial(load_rate, level))
     if near is None:
         return None
-    index = int(np.abs(_spectrum(near)).argmin())
+    index = int(np.abs(near.stability.eigenvalues).argmin())
     if stretch.crossing:
-        fold = stretch.locate(partial(_climb, 0.0))
-        return None if fold is None else _describe(stretch, fold, index, 1)
+        extreme = stretch.locate(partial(load_rate, 0.0))
+        fold = None if extreme is None else _describe(stretch, extreme, index, 1)
+        return fold if fold is not None and fold.kind == FOLD else None
     other = _across(stretch, near, index)
     if other is None or len(other.crossing) != 1:
         return None
     number = other.crossing[0]
-    point = other.locate(partial(_eigenvalue, number))
+    point = other.locate(partial(eigenvalue, number))
     if point is None:
         return None
-    return replace(_describe(other, point, number, 1), arrived=True)
+    found = _describe(other, point, number, 1)
+    here = replace(found.point, arclength=_arclength_of_extreme(stretch))
+    return replace(found, point=here, arrived=True)
 
 
-def _across(stretch: _Stretch, extreme: BranchPoint, index: int) -> _Stretch | None:
+def _arclength_of_extreme(stretch: Stretch) -> float:
+    """Return where on the branch the load is extreme; its rate changes linearly there."""
+    before, after = stretch.before.direction.load, stretch.after.direction.load
+    return stretch.before.arclength + stretch.length * before / (before - after)
+
+
+def _across(stretch: Stretch, extreme: BranchPoint, index: int) -> Stretch | None:
     """Return the stretch of the other branch that holds the crossing."""
     problem, settings = stretch.problem, stretch.settings
     direction = _through(problem, extreme, index, settings)
@@ -220,7 +168,7 @@ def _across(stretch: _Stretch, extreme: BranchPoint, index: int) -> _Stretch | N
     if back is None:
         return None
     forth = advance(problem, back, 2 * _SWITCHING_STEP, settings)
-    return None if forth is None else _Stretch(problem, back, forth, settings)
+    return None if forth is None else Stretch(problem, back, forth, settings)
 
 
 def _through(
@@ -249,33 +197,13 @@ def _step_along(
     return correct(problem, guess, point.load + step * direction.load, direction, settings)
 
 
-def _climb(level: float, point: BranchPoint) -> float:
-    """Return how fast the load rises along the branch, as zero where below `level`."""
-    rate = point.direction.load
-    return 0.0 if abs(rate) <= level else rate
-
-
-def _spectrum(point: BranchPoint) -> FloatArray:
-    return point.stability.eigenvalues
-
-
-def _eigenvalue(index: int, point: BranchPoint) -> float:
-    """Return an eigenvalue, as zero where rounding decides its sign.
-
-    Closer to a bifurcation than that the corrector would follow rounding along the mode.
-    """
-    found = point.stability
-    value = float(found.eigenvalues[index])
-    return 0.0 if abs(value) <= found.error_bound else value
-
-
 def _part_along(problem: Problem, point: BranchPoint, mode: FloatArray) -> float:
     slope = load_derivative(problem, point.model)
     return abs(float(slope @ mode)) / float(np.linalg.norm(slope))
 
 
 def _describe(
-    stretch: _Stretch, point: BranchPoint, index: int, multiplicity: int
+    stretch: Stretch, point: BranchPoint, index: int, multiplicity: int
 ) -> SpecialPoint:
     problem, settings = stretch.problem, stretch.settings
     values, vectors = point.model.eigen

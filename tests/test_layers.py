@@ -21,9 +21,10 @@ LAYERS = (
     "condensation curvature dissection film inextensible intersections loop "
     "measures meshing scaling symmetry",
     "cell problem tangent",
-    "conjugate_gradient newton stability trust_region",
-    "continuation exploration special_points",
-    "branch_plots ensemble gallery output plots render runs",
+    "coarsening conjugate_gradient loop_model newton primal_dual shifted_inverse "
+    "stability trust_region",
+    "continuation exploration special_points stretch",
+    "branch_plots ensemble gallery output planar_plots plots render runs",
     "__main__ cli",
 )
 LEVEL = {unit: level for level, units in enumerate(LAYERS) for unit in units.split()}

@@ -78,7 +78,7 @@ def record(path: Path, mesh: DiskMesh, films: Sequence[FloatArray]) -> None:
 
 
 def test_one_picture_per_state_of_the_sequence(rows: list[Row]) -> None:
-    """Disk, ellipse and eight by their last row; the twisted ones where most twisted."""
+    """Disk, ellipse and eight by their last row; the others where they bend the most."""
     assert distinct_steps(rows) == [1, 3, 5, 8, 10]
 
 
@@ -89,6 +89,18 @@ def test_rows_that_did_not_converge_are_no_states(rows: list[Row]) -> None:
     assert len(shown) == 5
     assert not {3, 5} & set(shown)
     assert distinct_steps([replace(row, status=STALLED) for row in rows]) == []
+
+
+def test_a_saddle_that_cuts_through_itself_is_a_state_of_its_own(rows: list[Row]) -> None:
+    """The saddle before it overhangs, up or down; then where most triangles cross."""
+    kappa = [0.0, 1.0, 2.5, 3.0, 2.9, 2.8]
+    crossings = [0, 0, 0, 0, 3, 60]
+    saddles = [
+        replace(row, abs_kappa_n=k, self_intersections=n, waist_twist=0.0)
+        for row, k, n in zip(rows, kappa, crossings, strict=False)
+    ]
+    assert distinct_steps(saddles) == [0, 2, 5]
+    assert distinct_steps(saddles[::-1]) == [5, 2, 0]
 
 
 def test_film_without_a_waist_path_still_has_states(rows: list[Row]) -> None:

@@ -12,6 +12,7 @@ import click
 from eulerplateau import __version__
 from eulerplateau.cli.branches import branches
 from eulerplateau.cli.mesh import mesh
+from eulerplateau.cli.planar import planar
 from eulerplateau.cli.sweep import sweep
 from eulerplateau.errors import EulerPlateauError, OutputError
 
@@ -31,6 +32,7 @@ def commands() -> None:
 
 commands.add_command(branches)
 commands.add_command(mesh)
+commands.add_command(planar)
 commands.add_command(sweep)
 
 

@@ -25,6 +25,7 @@ _OUR_FILES = (
     "sweep.pvd",
     "branches.csv",
     "branches.pvd",
+    "branches.png",
     "special_points.csv",
     "diagram.png",
     "shapes/shape_*.vtp",

@@ -57,7 +57,7 @@ class BranchRow(Row):
     branch : int, counted from 0
     origin : int, the number of the special point the branch starts from; None for the first
     special : int, the number of this special point; None for a regular point
-    arclength : float, from the branch's first point
+    arclength : float, from the special point the branch starts from, or its first point
     """
 
     branch: int

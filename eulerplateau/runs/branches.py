@@ -68,6 +68,7 @@ def carry_out(
         across = waist_path(mesh)
         start = _start(spec, mesh, problem, settings)
         status = "interrupted"
+        write_whole(path / "special_points.csv", _table(special))
         try:
             for step, visit in enumerate(explore(problem, start, settings, limits)):
                 x = problem.condensed.extend(visit.point.x)

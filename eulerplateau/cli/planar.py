@@ -1,0 +1,81 @@
+"""`eulerplateau planar`: exact planar films, as a table, a line of numbers, or figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+_JSON = click.option(
+    "--json", "as_json", is_flag=True, help="Print JSON, in full precision."
+)
+
+
+@click.group()
+def planar() -> None:
+    """Exact planar films, by elliptic functions: loads are sigma L^3 / alpha."""
+
+
+@planar.command()
+@_JSON
+def table(as_json: bool) -> None:
+    """Print where n-lobed films buckle, touch in a point, and touch along a line."""
+    from dataclasses import asdict
+
+    from eulerplateau.planar import LOBES, thresholds
+
+    rows = [asdict(thresholds(n)) for n in LOBES]
+    if as_json:
+        click.echo(json.dumps(rows, indent=2))
+        return
+    click.echo(f"{'n':>2} {'buckling':>18} {'point contact':>18} {'line contact':>18}")
+    for n, *loads in (row.values() for row in rows):
+        click.echo(f"{n:2d} " + " ".join(f"{load:18.10f}" for load in loads))
+
+
+@planar.command()
+@click.option(
+    "-n", "--n", "lobes", required=True, type=int, help="Number of lobes, 2 to 12."
+)
+@click.option("--sigma-hat", required=True, type=float, help="The load sigma L^3 / alpha.")
+@_JSON
+def shape(lobes: int, sigma_hat: float, as_json: bool) -> None:
+    """Print energy (in alpha/L), area, curvatures and regime of one film (L = 1).
+
+    Regimes: disk (up to the buckling threshold), buckled, point-contact, line-contact.
+    """
+    from eulerplateau.planar import planar_film
+
+    film = planar_film(lobes, sigma_hat)
+    names = ("energy", "area", "kappa_max", "kappa_min", "beta_hat")
+    numbers = {name: getattr(film, name) for name in names}
+    if as_json:
+        click.echo(json.dumps({**numbers, "regime": film.regime.value}, indent=2))
+        return
+    for name, value in numbers.items():
+        click.echo(f"{name:9}  {value:.15g}")
+    click.echo(f"{'regime':9}  {film.regime.value}")
+
+
+@planar.command()
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="The folder to write planar-gallery.png and planar-energy.png to.",
+)
+@click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+def figures(out: Path, quiet: bool) -> None:
+    """Draw the gallery of shapes (n = 2 ... 5) and the energies (n = 2, 3)."""
+    from eulerplateau.errors import OutputError
+    from eulerplateau.planar_plots import ENERGY, GALLERY, draw_figures
+
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(out, f"cannot be made: {error.strerror}") from None
+    if not draw_figures(out):
+        raise OutputError(out, "the figures could not be drawn there")
+    if not quiet:
+        click.echo(f"{out}: {GALLERY}, {ENERGY}")

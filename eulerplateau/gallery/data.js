@@ -1,0 +1,55 @@
+// The runs as the page holds them, their shapes and meshes decoded.
+
+function decode(text, Type) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return new Type(bytes.buffer);
+}
+
+function readGallery(element) {
+  const gallery = JSON.parse(element.textContent);
+  element.remove();
+  const meshes = gallery.meshes.map((mesh) => ({
+    vertices: mesh.vertices,
+    triangles: decode(mesh.triangles, Uint32Array),
+    loop: decode(mesh.loop, Uint32Array),
+  }));
+  const runs = gallery.runs.map((run) => ({
+    ...run,
+    mesh: meshes[run.mesh],
+    shapes: decode(run.shapes, Int16Array),
+    rows: run.rows.map((cells) =>
+      Object.fromEntries(cells.map((cell, column) => [gallery.columns[column], cell]))),
+  }));
+  return { ...gallery, meshes, runs };
+}
+
+// Positions of one shape, (3 n_v) numbers in units of L.
+function positions(gallery, run, place) {
+  const size = 3 * run.mesh.vertices;
+  const whole = run.shapes.subarray(place * size, (place + 1) * size);
+  return Float32Array.from(whole, (value) => value * gallery.unit);
+}
+
+// Every curve of the diagram: a branch or a leg of a sweep, with the points it is drawn
+// through. The first may belong to the curve it branches off from.
+function curves(gallery) {
+  const found = [];
+  for (const [number, run] of gallery.runs.entries()) {
+    for (const series of run.series) {
+      const places = [];
+      for (let place = series.first; place <= series.last; place++) places.push(place);
+      const drawn = series.origin === null ? places : [series.origin, ...places];
+      found.push({ ...series, number, run, places, drawn });
+    }
+  }
+  return found;
+}
+
+// Whether a curve is stable (true, false, or null if not known) from one row to the next.
+// At a special point the critical eigenvalue has no sign: the other end tells.
+function isStable(before, after) {
+  const regular = [before, after].filter((row) => row.special === null);
+  const ends = regular.length ? regular : [before, after];
+  if (ends.some((row) => row.n_unstable === null)) return null;
+  return ends.every((row) => row.n_unstable === 0);
+}

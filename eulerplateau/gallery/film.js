@@ -1,0 +1,84 @@
+// The film in 3D: blue in front, orange behind, its loop a tube; one scale for all shapes.
+
+class Film {
+  static FRONT = "#6FB1DE";
+  static BACK = "#F0A35E";
+  static LOOP = "#2B2B2B";
+  static TUBE = 0.0035;
+
+  // `eye` points from the film to the camera; at first it sees `halfSize` [across, up].
+  constructor(canvas, { eye, halfSize }) {
+    const L = Libraries;
+    this.halfSize = halfSize;
+    this.canvas = canvas;
+    this.renderer = new L.WebGLRenderer({ canvas, antialias: true });
+    this.renderer.setClearColor("#ffffff");
+    this.scene = new L.Scene();
+    this.scene.add(new L.AmbientLight("#ffffff", 1.7));
+    // Parallel rays and no perspective, so that sizes compare.
+    this.camera = new L.OrthographicCamera(-1, 1, 1, -1, 0, 2);
+    this.camera.up.set(0, 0, 1);
+    const light = new L.DirectionalLight("#ffffff", 1.6);
+    light.position.set(0, 0, 1);
+    this.camera.add(light, light.target);
+    this.scene.add(this.camera);
+    this.parts = [];
+    for (const [color, side] of [[Film.FRONT, L.FrontSide], [Film.BACK, L.BackSide]]) {
+      const material = new L.MeshPhongMaterial({ color, side, specular: "#222222" });
+      this.parts.push(new L.Mesh(new L.BufferGeometry(), material));
+    }
+    this.tube = new L.Mesh(
+      new L.BufferGeometry(), new L.MeshPhongMaterial({ color: Film.LOOP }));
+    this.scene.add(...this.parts, this.tube);
+    this.camera.position.fromArray(eye).normalize(); // at distance L: beyond any film
+    this.controls = new L.OrbitControls(this.camera, canvas);
+    this.controls.minZoom = 0.5;
+    this.controls.maxZoom = 50;
+    this.controls.addEventListener("change", () => this.draw());
+    this.controls.update();
+    this.controls.saveState();
+    new ResizeObserver(() => this.fit()).observe(canvas.parentElement);
+  }
+
+  show(mesh, x) {
+    const L = Libraries;
+    if (mesh !== this.mesh) {
+      this.mesh = mesh;
+      this.parts[0].geometry.dispose();
+      const sheet = new L.BufferGeometry();
+      sheet.setIndex(new L.BufferAttribute(mesh.triangles, 1));
+      for (const part of this.parts) part.geometry = sheet;
+    }
+    const sheet = this.parts[0].geometry;
+    sheet.setAttribute("position", new L.BufferAttribute(x, 3));
+    sheet.computeVertexNormals();
+    sheet.computeBoundingSphere();
+    const corners = Array.from(mesh.loop, (v) => new L.Vector3().fromArray(x, 3 * v));
+    const wire = new L.CatmullRomCurve3(corners, true);
+    this.tube.geometry.dispose();
+    this.tube.geometry = new L.TubeGeometry(wire, 2 * corners.length, Film.TUBE, 12, true);
+    this.draw();
+  }
+
+  firstView() {
+    this.controls.reset();
+  }
+
+  fit() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    const half = 1.05 * Math.max(
+      (this.halfSize[0] + Film.TUBE) / width, (this.halfSize[1] + Film.TUBE) / height);
+    Object.assign(this.camera, {
+      left: -half * width, right: half * width, top: half * height, bottom: -half * height,
+    });
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  draw() {
+    this.renderer.render(this.scene, this.camera);
+  }
+}

@@ -8,6 +8,11 @@ With the Laplacian split into interior (i) and loop (b),
 
 S is the discrete Dirichlet-to-Neumann map; a relaxed film has the energy
 load * tr(x_b^T S x_b).
+
+The interior is eliminated part by part (dissection.py). A part is one dense block: with
+what the parts before it have left on it and on the vertices around it, it is condensed in
+the same way, and the last to remain is the loop (the multifrontal method; Duff and Reid
+1983).
 """
 
 from __future__ import annotations
@@ -15,14 +20,25 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.linalg import cholesky, solve_triangular
+from scipy.sparse import csc_array, csr_array
+from threadpoolctl import threadpool_limits
 
+from eulerplateau.dissection import dissect
 from eulerplateau.mesh import FloatArray, IntArray
 
-# Right-hand sides per back-substitution: enough for speed, few enough that the block
-# (n_i, 64) stays small beside the factor.
-_BLOCK = 64
+
+@dataclass(frozen=True)
+class _Part:
+    """Vertices start ... stop - 1 of the order, which hang on those `around` them.
+
+    In equilibrium x[start:stop] = extension @ x[around].
+    """
+
+    start: int
+    stop: int
+    around: IntArray
+    extension: FloatArray
 
 
 @dataclass(frozen=True)
@@ -36,37 +52,78 @@ class Condensation:
     """
 
     stiffness: FloatArray
-    _factor: SuperLU | None
-    _coupling: csc_array
-    _loop: IntArray
-    _interior: IntArray
+    _order: IntArray
+    _parts: tuple[_Part, ...]
 
     def extend(self, x_loop: FloatArray) -> FloatArray:
         """Return the relaxed film (n_v, 3) on a loop (n_b, 3)."""
-        x = np.empty((len(self._loop) + len(self._interior), 3))
-        x[self._loop] = x_loop
-        if self._factor is not None:
-            x[self._interior] = self._factor.solve(-(self._coupling @ x_loop))
+        ordered = np.empty((len(self._order), 3))
+        ordered[len(ordered) - len(x_loop) :] = x_loop
+        for part in reversed(self._parts):
+            ordered[part.start : part.stop] = part.extension @ ordered[part.around]
+        x = np.empty_like(ordered)
+        x[self._order] = ordered
         return x
 
 
 def condense(laplacian: csc_array, loop: IntArray, interior: IntArray) -> Condensation:
-    """Eliminate `interior` from `laplacian` (n_v, n_v); one sparse factorisation."""
+    """Eliminate `interior` from `laplacian` (n_v, n_v), symmetric."""
     rows = laplacian.tocsr()
-    inner = rows[interior]
-    coupling = inner[:, loop].tocsc()
-    stiffness = rows[loop][:, loop].toarray()
-    factor = None
-    if len(interior):
-        # Symmetric positive definite: no pivoting, fill-reducing order of A + A^T.
-        factor = splu(
-            inner[:, interior].tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
-        for start in range(0, len(loop), _BLOCK):
-            block = slice(start, start + _BLOCK)
-            stiffness[:, block] -= coupling.T @ factor.solve(coupling[:, block].toarray())
-    symmetric = 0.5 * (stiffness + stiffness.T)
-    return Condensation(symmetric, factor, coupling, loop, interior)
+    pieces = dissect(rows, loop, interior)
+    order = np.concatenate([*pieces, loop])
+    rows = rows[order][:, order]
+    rows.sort_indices()
+    stiffness = rows[len(interior) :, len(interior) :].toarray()
+    stops = np.cumsum([len(piece) for piece in pieces], dtype=np.int64)
+    # Blocks of a hundred rows: two threads would mostly wait for each other.
+    with threadpool_limits(1, user_api="blas"):
+        parts = _eliminate(rows, stops, stiffness)
+    return Condensation(stiffness, order, tuple(parts))
+
+
+def _eliminate(rows: csr_array, stops: IntArray, stiffness: FloatArray) -> list[_Part]:
+    """Return the eliminated parts; add to S (n_b, n_b) what they leave on the loop."""
+    n = rows.shape[0]
+    local = np.empty(n, dtype=np.int64)
+    parts: list[_Part] = []
+    # What eliminated parts left, waiting for the part that holds their first neighbour.
+    waiting: dict[int, list[tuple[IntArray, FloatArray]]] = {}
+    n_i = n - len(stiffness)
+    start = 0
+    for number, stop in enumerate(stops.tolist()):
+        left = waiting.pop(number, [])
+        entries = slice(rows.indptr[start], rows.indptr[stop])
+        column, value = rows.indices[entries], rows.data[entries]
+        row = np.repeat(np.arange(stop - start), np.diff(rows.indptr[start : stop + 1]))
+        later = column >= start
+        row, column, value = row[later], column[later], value[later]
+        touched = np.unique(np.concatenate([column, *(around for around, _ in left)]))
+        around = touched[np.searchsorted(touched, stop) :]
+        own = stop - start
+        local[start:stop] = np.arange(own)
+        local[around] = np.arange(own, own + len(around))
+        front = np.zeros((own + len(around), own + len(around)))
+        front[row, local[column]] = value
+        for below, remainder in left:
+            place = local[below]
+            front[np.ix_(place, place)] += remainder
+        extension, remainder = _condense_dense(front, own)
+        parts.append(_Part(start, stop, around, extension))
+        if len(around) and around[0] < n_i:
+            owner = int(np.searchsorted(stops, around[0], side="right"))
+            waiting.setdefault(owner, []).append((around, remainder))
+        elif len(around):
+            stiffness[np.ix_(around - n_i, around - n_i)] += remainder
+        start = stop
+    return parts
+
+
+def _condense_dense(front: FloatArray, own: int) -> tuple[FloatArray, FloatArray]:
+    """Eliminate the first `own` rows of a symmetric matrix.
+
+    Returns -F_11^-1 F_12 and F_22 - F_21 F_11^-1 F_12, symmetric to the last bit.
+    """
+    factor = cholesky(front[:own, :own], lower=True, check_finite=False)
+    half = solve_triangular(factor, front[:own, own:], lower=True, check_finite=False)
+    extension = solve_triangular(factor, half, lower=True, trans=1, check_finite=False)
+    return -extension, front[own:, own:] - half.T @ half

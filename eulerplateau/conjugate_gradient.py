@@ -14,6 +14,7 @@ a second solve come back to the same energy.
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -53,10 +54,14 @@ def solve(
     load: float,
     *,
     max_iterations: int = 1_000_000,
+    observe: Callable[[FloatArray], None] = lambda x_loop: None,
 ) -> Equilibrium:
-    """Return the minimum reached from x (n_v, 3), confirmed by a kick and a new solve."""
+    """Return the minimum reached from x (n_v, 3), confirmed by a kick and a new solve.
+
+    `observe` is shown the loop (n_b, 3) each time the base point moves.
+    """
     started = time.perf_counter()
-    best = _descend(problem, x, multipliers, load, max_iterations)
+    best = _descend(problem, x, multipliers, load, max_iterations, observe)
     spent = best.iterations
     confirmed = False
     rng = np.random.default_rng(0)
@@ -64,7 +69,8 @@ def solve(
         if not best.converged:
             break
         kicked = best.x + transverse_kick(best.x[problem.loop_vertices], best.x, rng)
-        again = _descend(problem, kicked, best.multipliers, load, max_iterations - spent)
+        left = max_iterations - spent
+        again = _descend(problem, kicked, best.multipliers, load, left, observe)
         spent += again.iterations
         confirmed = again.converged and (
             abs(again.energy - best.energy) <= _SAME_ENERGY * abs(best.energy)
@@ -95,7 +101,12 @@ def transverse_kick(
 
 
 def _descend(
-    problem: Problem, x: FloatArray, multipliers: FloatArray, load: float, budget: int
+    problem: Problem,
+    x: FloatArray,
+    multipliers: FloatArray,
+    load: float,
+    budget: int,
+    observe: Callable[[FloatArray], None],
 ) -> Equilibrium:
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
     # The stretching stiffness whose stiffest mode is as stiff as the loop's in bending:
@@ -123,7 +134,10 @@ def _descend(
         after = _minimise(problem, iterate, load, penalty, forces, tension, scale)
         if after is None:
             return _record(problem, iterate, load, Status.STALLED)
+        if not np.isfinite(after.x).all():
+            return _record(problem, iterate, load, Status.NOT_FINITE)
         iterate = after
+        observe(iterate.x[problem.loop_vertices])
 
 
 def _forces(
@@ -151,14 +165,20 @@ def _minimise(
     tension: FloatArray,
     scale: float,
 ) -> _Iterate | None:
-    """Run scipy's conjugate gradients from the iterate as base point; None if stuck."""
+    """Run scipy's conjugate gradients from the iterate as base point; None if stuck.
+
+    The first step tried is as long as the gradient. In the unit of displacement in which
+    the loop's stiffest bending mode, 32 / s^3, has stiffness 1 that step is a good one; in
+    units of L it overshoots so far that the line search gives up.
+    """
     weights = load * problem.film.weights
     shape = iterate.x.shape
+    unit = float(np.sqrt(problem.loop.rest_lengths.min() ** 3 / 32))
 
-    def difference(u: FloatArray) -> tuple[float, FloatArray]:
+    def difference(scaled: FloatArray) -> tuple[float, FloatArray]:
         gradient = np.empty(shape)
         value = kernels.augmented_difference(
-            u.reshape(shape),
+            unit * scaled.reshape(shape),
             iterate.x,
             forces,
             problem.film.edges,
@@ -169,20 +189,23 @@ def _minimise(
             penalty,
             gradient,
         )
-        return value, gradient.ravel()
+        return value, unit * gradient.ravel()
 
     found = minimize(
         difference,
         np.zeros(iterate.x.size),
         jac=True,
         method="CG",
-        options={"gtol": iterate.tolerance * scale, "maxiter": _ITERATIONS_PER_BASE},
+        options={
+            "gtol": unit * iterate.tolerance * scale,
+            "maxiter": _ITERATIONS_PER_BASE,
+        },
     )
     if found.nit == 0 and not found.success:
         return None
     return replace(
         iterate,
-        x=iterate.x + found.x.reshape(shape),
+        x=iterate.x + unit * found.x.reshape(shape),
         iterations=iterate.iterations + int(found.nit),
     )
 

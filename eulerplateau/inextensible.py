@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import FloatArray
@@ -24,12 +27,53 @@ def jacobian(loop: Loop, x_loop: FloatArray) -> FloatArray:
     return rows.reshape(n, 3 * n)
 
 
+@dataclass(frozen=True)
+class LengthMetric:
+    """J M^-1 J^T (n_b, n_b), M = diag(<s>): how forces along the edges change lengths.
+
+    Each edge meets only its two neighbours, so the matrix is tridiagonal but for one
+    entry in the corner, which a rank-one term w w^T takes out, leaving what remains
+    positive semidefinite.
+    """
+
+    _factor: FloatArray
+    _corner: FloatArray
+    _solved_corner: FloatArray
+
+    def solve(self, rhs: FloatArray) -> FloatArray:
+        """Return (J M^-1 J^T)^-1 rhs, for rhs (n_b,) or (n_b, m)."""
+        open_chain = cho_solve_banded((self._factor, False), rhs, check_finite=False)
+        share = self._corner @ open_chain / (1 + self._corner @ self._solved_corner)
+        solution: FloatArray = open_chain - np.multiply.outer(self._solved_corner, share)
+        return solution
+
+
+def length_metric(loop: Loop, x_loop: FloatArray) -> LengthMetric:
+    """Factorise J M^-1 J^T at a loop (n_b, 3); LinAlgError if an edge has no length."""
+    ease = 1 / loop.mean_lengths
+    direction = loop.chords(x_loop) / loop.rest_lengths[:, None]
+    stretch = np.linalg.norm(direction, axis=1)
+    if not stretch.all():
+        raise LinAlgError("an edge of the loop has no length")
+    banded = np.empty((2, len(ease)))
+    banded[1] = stretch**2 * (ease + np.roll(ease, -1))
+    banded[0, 1:] = -ease[1:] * (direction[:-1] * direction[1:]).sum(axis=1)
+    bend = -ease[0] * float(direction[-1] @ direction[0])
+    ratio = np.sqrt(stretch[0] / stretch[-1])
+    corner = np.zeros(len(ease))
+    corner[[0, -1]] = np.sqrt(abs(bend)) * np.array([ratio, np.copysign(1 / ratio, bend)])
+    banded[1, [0, -1]] -= corner[[0, -1]] ** 2
+    factor = cholesky_banded(banded, check_finite=False)
+    solved = cho_solve_banded((factor, False), corner, check_finite=False)
+    return LengthMetric(factor, corner, solved)
+
+
 def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
     """Return the nearest loop (n_b, 3) that keeps its lengths, to rounding; None if lost.
 
     Gauss-Newton in the norm sum_v <s_v> |dx_v|^2.
     """
-    mass = np.repeat(loop.mean_lengths, 3)
+    mass = loop.mean_lengths[:, None]
     x, error = x_loop, np.inf
     for _ in range(_PROJECTION_STEPS):
         excess = loop.constraint(x)
@@ -39,13 +83,11 @@ def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
         # Quadratic convergence ends where rounding begins: then error stops falling.
         if error < 1e-15 or (error < 1e-12 and error >= 0.25 * previous):
             return x
-        rows = jacobian(loop, x)
-        weighted = rows / mass
         try:
-            shift = weighted.T @ np.linalg.solve(weighted @ rows.T, excess)
-        except np.linalg.LinAlgError:
+            pull = length_metric(loop, x).solve(excess)
+        except LinAlgError:
             return None
-        x = x - shift.reshape(-1, 3)
+        x = x - loop.tension_force(x, pull) / mass
     return x if error < 1e-12 else None
 
 

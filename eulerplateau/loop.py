@@ -32,8 +32,7 @@ class Loop:
 
     def chords(self, x_loop: FloatArray) -> FloatArray:
         """Return e_v = x_{v+1} - x_v (n_b, 3) of loop positions (n_b, 3)."""
-        chords: FloatArray = np.roll(x_loop, -1, axis=0) - x_loop
-        return chords
+        return differences(x_loop)
 
     def constraint(self, x_loop: FloatArray) -> FloatArray:
         """Return c_v = (|e_v|^2 - s_v^2) / (2 s_v) (n_b,); zero where lengths are kept.
@@ -51,8 +50,34 @@ class Loop:
         lengths = np.linalg.norm(self.chords(x_loop), axis=1)
         return float(np.abs(lengths / self.rest_lengths - 1).max())
 
+    def bending_force(self, x_loop: FloatArray) -> FloatArray:
+        """Return the gradient (n_b, 3) of sum_v <s_v> kappa_v^2, i.e. 2 B x.
+
+        By differences of neighbours: the product 2 B x would be lost in rounding, whose
+        share is eps / h^3 for edges of length h.
+        """
+        s = self.rest_lengths[:, None]
+        tangent = self.chords(x_loop) / s
+        curvature = backward_differences(tangent) / self.mean_lengths[:, None]
+        return backward_differences(differences(curvature) * (2 / s))
+
     def tension_force(self, x_loop: FloatArray, multipliers: FloatArray) -> FloatArray:
         """Return J^T lambda (n_b, 3), the gradient of sum_v lambda_v c_v."""
         pull = (multipliers / self.rest_lengths)[:, None] * self.chords(x_loop)
-        force: FloatArray = np.roll(pull, 1, axis=0) - pull
-        return force
+        return -backward_differences(pull)
+
+
+def differences(rows: FloatArray) -> FloatArray:
+    """Return D rows: row v + 1 minus row v, cyclic (np.roll costs more than the work)."""
+    result = np.empty_like(rows)
+    np.subtract(rows[1:], rows[:-1], out=result[:-1])
+    np.subtract(rows[0], rows[-1], out=result[-1])
+    return result
+
+
+def backward_differences(rows: FloatArray) -> FloatArray:
+    """Return -D^T rows: row v minus row v - 1, cyclic."""
+    result = np.empty_like(rows)
+    np.subtract(rows[1:], rows[:-1], out=result[1:])
+    np.subtract(rows[0], rows[-1], out=result[0])
+    return result

@@ -31,7 +31,7 @@ class Status(Enum):
 _ADVICE = {
     Status.CONVERGED: "an equilibrium within the stated tolerances",
     Status.ITERATION_LIMIT: "raise solver.max_iterations, or approach in smaller steps",
-    Status.STALLED: "no further progress in double precision: approach in smaller steps",
+    Status.STALLED: "rounding allows no more: take smaller load steps, or a coarser mesh",
     Status.SADDLE: "lower states lie close by: the load is at a transition; step past it",
     Status.NOT_FINITE: "the energy overflowed: use a smaller load or a finer mesh",
 }

@@ -17,6 +17,7 @@ class Stability:
     Attributes
     ----------
     eigenvalues : (m,) float, ascending, in units alpha / L^3 for the norm integral |p|^2 ds
+        All of them, or of a large loop the lowest: every one that is not stable is there.
     error_bound : float
         What rounding can have moved each eigenvalue by.
     """
@@ -46,7 +47,7 @@ def stability(model: TangentModel) -> Stability:
     The error bound is the backward error of the symmetric eigensolver and of the projected
     Hessian, a small multiple of eps |H|_2 (Weyl).
     """
-    values = model.eigen[0]
+    values = model.eigenvalues
     if len(values) == 0:
         return Stability(values, 0.0)
     eps = float(np.finfo(np.float64).eps)

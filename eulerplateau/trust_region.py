@@ -21,20 +21,27 @@ def trust_region_step(
     if w[0] > 0 and np.linalg.norm(g / w) <= radius:
         newton: FloatArray = -g / w
         return newton
-    lowest = max(0.0, -float(w[0]))
-    size = float(np.linalg.norm(g))
-    # A shift that bounds the step from below: relative, so that w + shift > 0 in floats.
-    floor = lowest + np.finfo(np.float64).eps * max(float(np.abs(w).max()), 1e-300)
+    # Unknown is the gap between the shift and the least shift that is allowed, not the
+    # shift: in the nearly hard case the gap is small and the step goes with its inverse.
+    lifted = w + max(0.0, -float(w[0]))
+    least = np.finfo(np.float64).eps * max(float(np.abs(w).max()), 1e-300)
 
-    def excess(shift: float) -> float:
-        return float(np.linalg.norm(g / (w + shift))) - radius
+    def length(gap: float) -> float:
+        return float(np.linalg.norm(g / (lifted + gap)))
 
-    if excess(floor) <= 0.0:
-        step: FloatArray = -g / (w + floor)
+    if length(least) <= radius:
+        step: FloatArray = -g / (lifted + least)
         step[0] = 0.0
         rest = np.sqrt(max(radius**2 - float(step @ step), 0.0))
         step[0] = -rest if g[0] > 0 else rest
         return step
-    shift = brentq(excess, floor, lowest + size / radius + floor, rtol=1e-10)
-    bounded: FloatArray = -g / (w + shift)
+    # Nearly linear in the gap, unlike the length itself.
+    gap = brentq(
+        lambda gap: 1 / radius - 1 / length(gap),
+        least,
+        float(np.linalg.norm(g)) / radius + least,
+        xtol=least * 1e-10,
+        rtol=1e-12,
+    )
+    bounded: FloatArray = -g / (lifted + gap)
     return bounded

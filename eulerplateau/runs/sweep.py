@@ -29,8 +29,8 @@ Solver = Callable[[Problem, FloatArray, FloatArray, float], Equilibrium]
 
 SOLVER_MODULES = {"newton": "newton", "cg": "conjugate_gradient"}
 
-# Below this many loop vertices two threads cost more in waiting than they win in work.
-_LOOP_WORTH_TWO_THREADS = 400
+# Matrices here are as large as the loop: a second thread waits more than it works.
+_BLAS_THREADS = 1
 
 
 @dataclass(frozen=True)
@@ -58,11 +58,10 @@ def carry_out(
     started = time.perf_counter()
     mesh = make_mesh(spec)
     problem = make_problem(mesh, spec.film.model)
-    threads = None if mesh.n_b > _LOOP_WORTH_TWO_THREADS else 1
     rows: list[Row] = []
     summary = describe(spec, mesh)
     with (
-        threadpool_limits(threads, user_api="blas"),
+        threadpool_limits(_BLAS_THREADS, user_api="blas"),
         RunFolder.create(path, {**summary, "status": "running"}) as folder,
     ):
         summary["blas_threads"] = [pool["num_threads"] for pool in threadpool_info()]

@@ -1,0 +1,50 @@
+"""Fixtures shared by the tests; everything here is made once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+# Loaded before the threads are counted: scipy brings a BLAS of its own.
+import scipy.linalg  # noqa: F401
+import shapes
+from threadpoolctl import threadpool_limits
+
+from eulerplateau.mesh import DiskMesh
+from eulerplateau.meshing import load_mesh
+from eulerplateau.problem import Problem, make_problem
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _one_blas_thread() -> Iterator[None]:
+    """Two threads that wait for each other slow small matrices down a hundredfold."""
+    with threadpool_limits(1, user_api="blas"):
+        yield
+
+
+@pytest.fixture(scope="session")
+def elongated() -> DiskMesh:
+    """The stored mesh of the paper's first experiment."""
+    return load_mesh(ROOT / "meshes" / "elongated.vtp")
+
+
+@pytest.fixture(scope="session")
+def hexagon() -> DiskMesh:
+    """The stored mesh of the paper's second experiment."""
+    return load_mesh(ROOT / "meshes" / "hexagon.vtp")
+
+
+@pytest.fixture(scope="session")
+def oval() -> DiskMesh:
+    """127 vertices without any symmetry, once and a half as long as wide."""
+    points, triangles = shapes.disk_points(6, jitter=0.2)
+    return shapes.mesh_of(points * [1.5, 1.0], triangles)
+
+
+@pytest.fixture(scope="session")
+def oval_problem(oval: DiskMesh) -> Problem:
+    return make_problem(oval)

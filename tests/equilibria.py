@@ -1,0 +1,76 @@
+"""Equilibria of every kind, stable or not, and what the tests compare them with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from eulerplateau import newton
+from eulerplateau.film import Film
+from eulerplateau.inextensible import project_lengths
+from eulerplateau.loop import Loop
+from eulerplateau.mesh import DiskMesh, FloatArray
+from eulerplateau.problem import Problem
+from eulerplateau.tangent import LoopEnergy, TangentModel, tangent_model
+
+
+def dirichlet(mesh: DiskMesh) -> Film:
+    """Cotangent weights of the rest mesh: load * sum w |e|^2 is sigma/2 int |grad x|^2.
+
+    With load = sigma_hat. For the identity map it is sigma_hat times the area.
+    """
+    pairs, weights = [], []
+    for corner in range(3):
+        apex, i, j = np.roll(mesh.triangles, corner, axis=1).T
+        a, b = mesh.x[i] - mesh.x[apex], mesh.x[j] - mesh.x[apex]
+        doubled_area = np.linalg.norm(np.cross(a, b), axis=1)
+        pairs.append(np.stack([i, j], axis=1))
+        weights.append((a * b).sum(axis=1) / doubled_area / 4)
+    return Film(np.concatenate(pairs), np.concatenate(weights), 1.0)
+
+
+def critical_point(energy: LoopEnergy, x_loop: FloatArray) -> TangentModel:
+    """Newton's method without a trust region: to the nearest equilibrium, of any index.
+
+    From a flat loop it stays in the plane.
+    """
+    model = tangent_model(energy, x_loop)
+    for _ in range(60):
+        if model.residual <= max(10 * model.rounding, 1e-12):
+            return model
+        step = model.displacement(np.linalg.solve(model.hessian, -model.gradient))
+        longest = np.linalg.norm(step, axis=1).max()
+        x = project_lengths(energy.loop, model.x + step * min(1.0, 0.01 / longest))
+        assert x is not None
+        model = tangent_model(energy, x)
+    raise AssertionError("no equilibrium reached")
+
+
+def planar(problem: Problem, mesh: DiskMesh, loads: Iterable[float]) -> list[TangentModel]:
+    """The planar equilibria of ascending loads, each from the last, stable or not.
+
+    The first load has to be one at which the film stays in the plane.
+    """
+    loads = list(loads)
+    start = newton.solve(problem, mesh.x, np.zeros(mesh.n_b), loads[0])
+    x = start.x[mesh.loop] * [1.0, 1.0, 0.0]
+    found = []
+    for load in loads:
+        found.append(critical_point(newton.loop_energy(problem, load), x))
+        x = found[-1].x
+    return found
+
+
+def ring(n: int) -> tuple[Loop, FloatArray]:
+    """A regular n-gon of length 1 in the plane z = 0, and its rest lengths."""
+    angle = 2 * np.pi * np.arange(n) / n
+    x = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    return Loop(np.full(n, 1 / n)), x / (2 * n * np.sin(np.pi / n))
+
+
+def distance_up_to_motion(x: FloatArray, y: FloatArray) -> float:
+    """Largest distance of two shapes (n, 3) after the best rotation or reflection."""
+    a, b = x - x.mean(axis=0), y - y.mean(axis=0)
+    u, _, v = np.linalg.svd(a.T @ b)
+    return float(np.linalg.norm(a @ (u @ v) - b, axis=1).max())

@@ -29,7 +29,7 @@ import numpy as np
 
 from eulerplateau.loop import backward_differences, differences
 from eulerplateau.mesh import FloatArray
-from eulerplateau.tangent import LoopEnergy, lagrangian_hessian
+from eulerplateau.tangent import TURNS, LoopEnergy, lagrangian_hessian
 
 # Deflation strength over the mean diagonal of H: between its soft and its stiff modes.
 _DEFLATION = 1e-3
@@ -138,20 +138,9 @@ def _step(
     return inverse @ (rho * (soft @ share) - pull), tension
 
 
-# Row k is the matrix G_k with axis_k x r = r G_k.
-_TURNS = np.array(
-    [
-        [[0, 0, 0], [0, 0, 1], [0, -1, 0]],
-        [[0, 0, -1], [0, 0, 0], [1, 0, 0]],
-        [[0, 1, 0], [-1, 0, 0], [0, 0, 0]],
-    ],
-    dtype=np.float64,
-)
-
-
 def _rotations(x: FloatArray, soft: FloatArray) -> FloatArray:
     """Return the three rotations as unit columns (9, 3) in the unknowns Y = U^T p."""
     shape = soft.T @ (x - x.mean(axis=0))
-    columns = (shape @ _TURNS).reshape(3, 9).T
+    columns = (shape @ TURNS).reshape(3, 9).T
     unit: FloatArray = columns / np.linalg.norm(columns, axis=0)
     return unit

@@ -23,6 +23,16 @@ from eulerplateau.mesh import FloatArray
 
 RIGID_MOTIONS = 6
 
+# Row k is the matrix G_k with axis_k x r = r G_k.
+TURNS = np.array(
+    [
+        [[0, 0, 0], [0, 0, 1], [0, -1, 0]],
+        [[0, 0, -1], [0, 0, 0], [1, 0, 0]],
+        [[0, 1, 0], [-1, 0, 0], [0, 0, 0]],
+    ],
+    dtype=np.float64,
+)
+
 
 @dataclass(frozen=True)
 class LoopEnergy:
@@ -103,11 +113,9 @@ class TangentModel:
 def rigid_motions(x: FloatArray) -> FloatArray:
     """Return the three translations and three rotations of x (n, 3) as columns (3 n, 6)."""
     centred = x - x.mean(axis=0)
-    motions = np.zeros((len(x), 3, RIGID_MOTIONS))
-    axes = np.eye(3)
-    for d in range(3):
-        motions[:, d, d] = 1.0
-        motions[:, :, 3 + d] = np.cross(axes[d], centred)
+    motions = np.empty((len(x), 3, RIGID_MOTIONS))
+    motions[:, :, :3] = np.eye(3)
+    motions[:, :, 3:] = (centred @ TURNS).transpose(1, 2, 0)
     return motions.reshape(-1, RIGID_MOTIONS)
 
 
@@ -126,8 +134,9 @@ def tangent_model(energy: LoopEnergy, x: FloatArray) -> TangentModel:
     forces = max(float(np.abs(f).max()) for f in (bending, film, tension))
     basis = q[:, n + RIGID_MOTIONS :]
     hessian = lagrangian_hessian(energy, multipliers)
-    spread = (basis / scale[:, None]).reshape(n, -1)
-    projected = (basis / scale[:, None]).T @ (hessian @ spread).reshape(3 * n, -1)
+    root = scale[::3]
+    scaled = hessian / (root * root[:, None])
+    projected = basis.T @ (scaled @ basis.reshape(n, -1)).reshape(3 * n, -1)
     return TangentModel(
         x=x,
         multipliers=multipliers,

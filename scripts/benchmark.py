@@ -105,7 +105,7 @@ def case(size: int, solver: str) -> None:
 
 def run_apart(size: int, solver: str) -> dict[str, Any]:
     """Run a case in a process of its own."""
-    command = [sys.executable, "-P", __file__, "case", str(size), solver]
+    command = [sys.executable, __file__, "case", str(size), solver]
     done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
     found: dict[str, Any] = json.loads(done.stdout)
     return found

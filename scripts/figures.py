@@ -229,9 +229,9 @@ INTRODUCTION = """# The paper's figures
 Giomi, *Softly constrained films*: its numbers beside those of this program, as printed by
 `scripts/figures`. Loads of films in space are the middles of the brackets that a sweep's
 steps leave; they depend on the mesh by a few per cent, and the paper does not specify its
-elongated hexagon ([transitions](transitions.md)). It does not say either how its exponent
-was fitted: a straight line through the logarithms is one way to a value like it, and depends
-on the range of ε = load/onset - 1. Ours has the next term of the law too, A εⁿ (1 + b ε).
+elongated hexagon ([transitions](transitions.md)). It does not say how its exponent was
+fitted: a straight line through the logarithms is one way to a value like it, and depends on
+the range of ε = load/onset - 1. Ours has the next term of the law too, A εⁿ (1 + b ε).
 
 """
 

@@ -24,7 +24,7 @@ LAYERS = (
     "coarsening conjugate_gradient loop_model newton primal_dual shifted_inverse "
     "stability trust_region",
     "continuation exploration special_points stretch",
-    "branch_plots ensemble gallery output planar_plots plots render runs",
+    "branch_plots ensemble gallery output planar_plots plots render run_plots runs",
     "__main__ cli",
 )
 LEVEL = {unit: level for level, units in enumerate(LAYERS) for unit in units.split()}

@@ -14,6 +14,8 @@ from eulerplateau.cli.branches import branches
 from eulerplateau.cli.gallery import gallery
 from eulerplateau.cli.mesh import mesh
 from eulerplateau.cli.planar import planar
+from eulerplateau.cli.plot import plot
+from eulerplateau.cli.render import render
 from eulerplateau.cli.sweep import sweep
 from eulerplateau.errors import EulerPlateauError, OutputError
 
@@ -35,6 +37,8 @@ commands.add_command(branches)
 commands.add_command(gallery)
 commands.add_command(mesh)
 commands.add_command(planar)
+commands.add_command(plot)
+commands.add_command(render)
 commands.add_command(sweep)
 
 

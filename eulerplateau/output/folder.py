@@ -30,6 +30,9 @@ _OUR_FILES = (
     "diagram.png",
     "shapes/shape_*.vtp",
     "pictures/shape_*.png",
+    "pictures/sheet*.png",
+    "pictures/turn_*.gif",
+    "pictures/sweep*.gif",
 )
 
 

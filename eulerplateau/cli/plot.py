@@ -1,0 +1,48 @@
+"""`eulerplateau plot`: figures for print of one run, or of several compared."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+_WHAT = ("diagram", "energy", "curvature", "eigenvalue", "onset")
+_FORMATS = (".png", ".pdf", ".svg")
+
+
+@click.command()
+@click.argument(
+    "folders", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path)
+)
+@click.option(
+    "-o",
+    "--out",
+    type=click.Path(path_type=Path),
+    default=Path("plot.png"),
+    show_default=True,
+    help="The file to draw: .png, .pdf or .svg.",
+)
+@click.option("--what", type=click.Choice(_WHAT), default="diagram", show_default=True)
+@click.option("--quiet", is_flag=True, help="Print nothing but errors.")
+def plot(folders: tuple[Path, ...], out: Path, what: str, quiet: bool) -> None:
+    """Plot the run folders DIR, of sweeps or branches, together.
+
+    Over the load: `diagram` the loop's total normal curvature, with the shapes; `energy`;
+    `curvature`, the film's total Gauss curvature; `eigenvalue`, the smallest one of the
+    second variation. `onset` fits the exponents with which a film leaves its plane: it
+    needs a dozen loads within 2 % above, as runs/onset.toml has them.
+    """
+    from eulerplateau.errors import OutputError
+    from eulerplateau.run_plots import draw_plot, read_runs
+    from eulerplateau.run_plots.onset import fit_onset
+
+    if out.suffix.lower() not in _FORMATS:
+        raise click.BadParameter(f"{out}: should end in {', '.join(_FORMATS)}")
+    # Here, so that what is wrong with a folder is an error of this process.
+    for run in read_runs(folders):
+        if what == "onset":
+            fit_onset(run)
+    if not draw_plot(folders, what, out):
+        raise OutputError(out, "the figure could not be drawn there")
+    if not quiet:
+        click.echo(str(out))

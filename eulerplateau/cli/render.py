@@ -1,0 +1,77 @@
+"""`eulerplateau render`: pictures and animations of the shapes of a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from eulerplateau.errors import OutputError
+
+
+@click.command()
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.option(
+    "--step", "steps", type=int, multiple=True, help="Show this step; may be repeated."
+)
+@click.option(
+    "--load",
+    "loads",
+    type=float,
+    multiple=True,
+    help="Show the shape nearest to this load kL^3/alpha on each branch that reaches it; "
+    "may be repeated.",
+)
+@click.option("--all", "everything", is_flag=True, help="Show every shape.")
+@click.option(
+    "--colour",
+    default="sides",
+    show_default=True,
+    help="sides (front blue, back orange), soap (the same, translucent), or a field of the "
+    "shape files: angle_defect inside; kappa, kappa_n, kappa_g, contact_angle on the loop.",
+)
+@click.option(
+    "--animate",
+    type=click.Choice(["turn", "sweep"]),
+    help="Instead of pictures, one GIF of each shape turning, or one GIF of the sweep "
+    "(of every shape, if none is chosen).",
+)
+@click.option("--quiet", is_flag=True, help="No summary: for batches.")
+def render(
+    folder: Path,
+    steps: tuple[int, ...],
+    loads: tuple[float, ...],
+    everything: bool,
+    colour: str,
+    animate: str | None,
+    quiet: bool,
+) -> None:
+    """Draw the shapes of the run folder DIR, of a sweep or of branches, to DIR/pictures.
+
+    Without --step, --load or --all: one shape per distinct state. All pictures of a run
+    have one view and one scale, so that shapes can be compared; several make a contact
+    sheet too.
+    """
+    from eulerplateau.gallery import collect
+    from eulerplateau.output.folder import shape_name
+    from eulerplateau.render import (
+        SIDES,
+        SOAP,
+        STILLS,
+        SWEEP,
+        chosen_steps,
+        draw_shapes,
+        read_field,
+    )
+
+    run = collect([folder]).runs[0]
+    if everything or (animate == SWEEP and not steps and not loads):
+        chosen = [row.step for row in run.rows]
+    else:
+        chosen = chosen_steps(run, steps, loads)
+    if colour not in (SIDES, SOAP):
+        read_field(folder / shape_name(chosen[0]), colour)
+    if not draw_shapes(folder, chosen, animate or STILLS, colour):
+        raise OutputError(folder / "pictures", "the pictures could not all be drawn")
+    if not quiet:
+        click.echo(f"{folder / 'pictures'}: {len(chosen)} shape(s) drawn")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import equilibria
 import numpy as np
 import pytest
@@ -93,10 +95,10 @@ def test_iteration_ends_quadratically(
         solve(oval_problem, start, load, max_iterations=i).residual
         for i in range(max(1, total - 6), total)
     ]
-    # Newton's method doubles the digits from the moment they are few until rounding ends it.
+    # Newton's method doubles the digits from when they are few until rounding ends it.
     orders = [
         np.log(after) / np.log(before)
-        for before, after in zip(residuals, residuals[1:], strict=False)
+        for before, after in pairwise(residuals)
         if before < 0.1 and after > 1e-11
     ]
     assert residuals[-1] < 1e-4
@@ -155,7 +157,7 @@ def test_exactly_flat_start_below_the_onset_stays_in_the_plane(
 def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_iteration(
     hexagon: DiskMesh, load: float
 ) -> None:
-    """Just beyond the onset the hexagon's saddle hardly feels in which direction it points."""
+    """Just beyond the onset the hexagon's saddle hardly feels in which direction it is."""
     problem = make_problem(hexagon)
     found = solve(problem, shapes.crumpled(hexagon, 1e-3), load)
     assert_minimum(problem, found)
@@ -188,7 +190,9 @@ def test_a_moved_start_ends_in_the_moved_minimum(
     assert equilibria.distance_up_to_motion(one.x, two.x) < 1e-6
 
 
-def test_slack_film_lets_the_loop_be_a_circle(oval: DiskMesh, oval_problem: Problem) -> None:
+def test_slack_film_lets_the_loop_be_a_circle(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
     found = solve(oval_problem, shapes.crumpled(oval, 1e-3), 0.0)
     around = found.x[oval.loop]
     radii = np.linalg.norm(around - around.mean(axis=0), axis=1)

@@ -1,4 +1,4 @@
-"""The trust-region step: the conditions that make it the global minimum, and brute force."""
+"""The trust-region step: what makes it the global minimum, and brute force."""
 
 from __future__ import annotations
 

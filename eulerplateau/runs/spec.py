@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from eulerplateau.errors import SpecError
 from eulerplateau.meshing import MeshSpec
@@ -91,6 +91,21 @@ class Refinement(Settings):
         return sorted(float(v) for v in self.onset * (1 + distances))
 
 
+def _kind_of_load(given: Any) -> str:
+    if not isinstance(given, dict):
+        return "number"
+    return "refinement" if "onset" in given else "range"
+
+
+# Told apart beforehand, so that a mistake in one is not reported as one in another.
+Load = Annotated[
+    Annotated[float, Tag("number")]
+    | Annotated[Range, Tag("range")]
+    | Annotated[Refinement, Tag("refinement")],
+    Discriminator(_kind_of_load),
+]
+
+
 class SweepSettings(Settings):
     """Which loads, in which order.
 
@@ -103,7 +118,7 @@ class SweepSettings(Settings):
     direction : "up", "down" or "up-down"
     """
 
-    loads: tuple[float | Range | Refinement, ...] = Field(min_length=1)
+    loads: tuple[Load, ...] = Field(min_length=1)
     quantity: Literal["kL3_alpha", "k"] = "kL3_alpha"
     direction: Literal["up", "down", "up-down"] = "up"
 
@@ -153,10 +168,17 @@ class BranchSettings(Settings):
     unstable_modes: int = Field(default=3, ge=0)
 
 
+def _kind_of_mesh(given: Any) -> str:
+    return "specified" if isinstance(given, dict) and "polygon" in given else "stored"
+
+
 class RunSpec(Settings):
     """One run: a mesh, a film, a loop, a start, the loads, a solver."""
 
-    mesh: StoredMesh | MeshSpec
+    mesh: Annotated[
+        Annotated[StoredMesh, Tag("stored")] | Annotated[MeshSpec, Tag("specified")],
+        Discriminator(_kind_of_mesh),
+    ]
     film: FilmSettings = FilmSettings()
     loop: LoopSettings = LoopSettings()
     start: StartSettings = StartSettings()

@@ -116,7 +116,6 @@ def test_mistake_in_the_sweep_names_its_key(tmp_path: Path, wrong: str, key: str
         ("", "mesh"),
         ("[mesh]\nfile = 3", "mesh.file"),
         ("[mesh]\nfile = 'a.vtp'\nvertices = 9", "mesh.vertices"),
-        ("[mesh]\nvertices = 400", "mesh.polygon"),
         (
             "[mesh]\nvertices = -4\n[mesh.polygon]\nkind = 'regular'\nsides = 6",
             "mesh.vertices",

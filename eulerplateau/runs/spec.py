@@ -92,9 +92,10 @@ class Refinement(Settings):
 
 
 def _kind_of_load(given: Any) -> str:
-    if not isinstance(given, dict):
-        return "number"
-    return "refinement" if "onset" in given else "range"
+    """Tell loads apart, as read from TOML and as the models that are written out."""
+    if isinstance(given, Refinement) or (isinstance(given, dict) and "onset" in given):
+        return "refinement"
+    return "range" if isinstance(given, Range | dict) else "number"
 
 
 # Told apart beforehand, so that a mistake in one is not reported as one in another.
@@ -169,7 +170,8 @@ class BranchSettings(Settings):
 
 
 def _kind_of_mesh(given: Any) -> str:
-    return "specified" if isinstance(given, dict) and "polygon" in given else "stored"
+    specified = isinstance(given, dict) and "file" not in given
+    return "specified" if specified or isinstance(given, MeshSpec) else "stored"
 
 
 class RunSpec(Settings):
@@ -196,7 +198,9 @@ class RunSpec(Settings):
         """Return the loads k L^3 / alpha in the order in which they are swept."""
         scale = 1.0
         if self.sweep.quantity == "k":
-            scale = self.loop.length**3 / self.loop.alpha
+            length = self.loop.length
+            # Not length**3, which raises where a product overflows to infinity.
+            scale = length * length * length / self.loop.alpha
         return [scale * value for value in self.sweep.values()]
 
 

@@ -64,7 +64,9 @@ def carry_out(
         threadpool_limits(_BLAS_THREADS, user_api="blas"),
         RunFolder.create(path, {**summary, "status": "running"}) as folder,
     ):
-        summary["blas_threads"] = [pool["num_threads"] for pool in threadpool_info()]
+        summary["blas_threads"] = [
+            pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"
+        ]
         path_across = waist_path(mesh)
         status = "interrupted"
         try:

@@ -1,0 +1,168 @@
+"""The paper's method against Newton's, and its own promises."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import equilibria
+import numpy as np
+import pytest
+import shapes
+
+from eulerplateau import conjugate_gradient, newton
+from eulerplateau.conjugate_gradient import transverse_kick
+from eulerplateau.mesh import DiskMesh, FloatArray
+from eulerplateau.problem import Problem, make_problem
+from eulerplateau.solution import LENGTH_TOLERANCE, RESIDUAL_TOLERANCE, Equilibrium, Status
+
+SOLVERS = {"newton": newton.solve, "cg": conjugate_gradient.solve}
+
+
+def regular() -> DiskMesh:
+    return shapes.mesh_of(*shapes.hexagon_points(5))
+
+
+def irregular() -> DiskMesh:
+    points, triangles = shapes.disk_points(6, jitter=0.2)
+    return shapes.mesh_of(points * [1.5, 1.0], triangles)
+
+
+def long() -> DiskMesh:
+    points, triangles = shapes.hexagon_points(5)
+    return shapes.mesh_of(points * [2.0, 1.0], triangles)
+
+
+def solve(name: str, mesh: DiskMesh, x: FloatArray, load: float) -> Equilibrium:
+    return SOLVERS[name](make_problem(mesh), x, np.zeros(mesh.n_b), load)
+
+
+# From the plane, through twisted saddles, to folded films.
+CASES = [
+    (regular, 300.0),
+    (regular, 700.0),
+    (irregular, 300.0),
+    (irregular, 900.0),
+    (irregular, 1600.0),
+    (long, 300.0),
+    (long, 1000.0),
+    (long, 2500.0),
+]
+
+
+@pytest.mark.parametrize(("make", "load"), CASES)
+def test_every_solver_reaches_the_same_equilibrium_on_every_case(
+    make: Callable[[], DiskMesh], load: float
+) -> None:
+    mesh = make()
+    start = shapes.crumpled(mesh, 1e-3)
+    found = {name: solve(name, mesh, start, load) for name in SOLVERS}
+    for result in found.values():
+        assert result.status is Status.CONVERGED
+        assert result.load == load
+        assert result.residual <= RESIDUAL_TOLERANCE
+        assert result.length_error <= LENGTH_TOLERANCE
+    assert found["cg"].energy == pytest.approx(found["newton"].energy, rel=1e-8)
+    # The energy is quadratic about a minimum: 1e-8 of it is 1e-4 of the shape.
+    gap = equilibria.distance_up_to_motion(found["cg"].x, found["newton"].x)
+    assert gap < 1e-4
+    tension = np.abs(found["newton"].multipliers).max()
+    np.testing.assert_allclose(
+        found["cg"].multipliers, found["newton"].multipliers, atol=1e-2 * tension
+    )
+
+
+def test_accepted_state_is_what_its_record_says(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    found = solve("cg", oval, shapes.crumpled(oval, 1e-3), 900.0)
+    film = oval_problem.film_energy(found.x, 900.0)[0]
+    bending = oval_problem.bending_energy(found.x)[0]
+    assert found.energy == pytest.approx(film + bending, rel=1e-14)
+    assert found.residual == oval_problem.residual(found.x, found.multipliers, 900.0)
+    assert found.length_error == oval_problem.length_error(found.x)
+    assert (found.n_unstable, found.lowest_eigenvalue) == (None, None)
+    assert found.iterations > 0
+    assert found.seconds > 0
+
+
+def test_kick_makes_it_leave_a_saddle(oval: DiskMesh, oval_problem: Problem) -> None:
+    """From the planar equilibrium beyond the onset, in balance to rounding."""
+    load = 1000.0
+    flat = equilibria.planar(oval_problem, oval, [300.0, load])[-1]
+    x = oval_problem.condensed.extend(flat.x)
+    saddle = oval_problem.equilibrium(x, flat.multipliers, load, Status.CONVERGED)
+    assert saddle.residual < RESIDUAL_TOLERANCE
+    found = conjugate_gradient.solve(oval_problem, x, flat.multipliers, load)
+    assert found.status is Status.CONVERGED
+    assert found.energy < saddle.energy * (1 - 1e-4)
+    assert np.ptp(found.x[:, 2]) > 0.01
+    lowest = newton.solve(oval_problem, found.x, found.multipliers, load)
+    assert found.energy == pytest.approx(lowest.energy, rel=1e-8)
+
+
+def test_restart_from_newtons_minimum_stays_there(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    start = solve("newton", oval, shapes.crumpled(oval, 1e-3), 900.0)
+    found = conjugate_gradient.solve(oval_problem, start.x, start.multipliers, 900.0)
+    assert found.status is Status.CONVERGED
+    assert found.energy == pytest.approx(start.energy, rel=1e-8)
+
+
+@pytest.mark.parametrize("limit", [1, 50])
+def test_iteration_limit_is_a_status_and_not_an_exception(
+    oval: DiskMesh, oval_problem: Problem, limit: int
+) -> None:
+    found = conjugate_gradient.solve(
+        oval_problem,
+        shapes.crumpled(oval, 1e-3),
+        np.zeros(oval.n_b),
+        900.0,
+        max_iterations=limit,
+    )
+    assert found.status is Status.ITERATION_LIMIT
+    assert not found.converged
+    assert found.iterations >= limit
+    assert np.isfinite(found.x).all()
+
+
+@pytest.mark.parametrize("bad", [np.nan, 1e200])
+def test_overflow_is_a_status_and_not_an_exception(
+    oval: DiskMesh, oval_problem: Problem, bad: float
+) -> None:
+    x = oval.x.copy()
+    x[3, 2] = bad
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = conjugate_gradient.solve(oval_problem, x, np.zeros(oval.n_b), 900.0)
+    assert found.status is Status.NOT_FINITE
+
+
+def test_two_solves_are_the_same_bit_for_bit(oval: DiskMesh) -> None:
+    start = shapes.crumpled(oval, 1e-3)
+    one, two = (solve("cg", oval, start, 900.0) for _ in range(2))
+    np.testing.assert_array_equal(one.x, two.x)
+    assert one.iterations == two.iterations
+
+
+def test_kick_is_transverse_smooth_and_a_thousandth_of_the_length(oval: DiskMesh) -> None:
+    turn = shapes.rotation()
+    x = oval.x @ turn.T
+    kick = transverse_kick(x[oval.loop], x, np.random.default_rng(0))
+    assert np.linalg.norm(kick, axis=1).max() == pytest.approx(1e-3)
+    normal = turn @ [0.0, 0.0, 1.0]
+    np.testing.assert_allclose(np.cross(kick, normal), 0, atol=1e-15)
+    # Smooth: two kicks agree in nothing, but neighbours differ by little.
+    i, j = oval.edges.T
+    assert np.linalg.norm(kick[i] - kick[j], axis=1).max() < 0.7e-3
+    again = transverse_kick(x[oval.loop], x, np.random.default_rng(1))
+    assert np.abs(again - kick).max() > 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("load", [300.0, 720.0, 1000.0])
+def test_solvers_agree_on_the_papers_mesh(elongated: DiskMesh, load: float) -> None:
+    start = shapes.crumpled(elongated, 1e-3)
+    cg, exact = (solve(name, elongated, start, load) for name in ("cg", "newton"))
+    assert cg.status is Status.CONVERGED
+    assert cg.energy == pytest.approx(exact.energy, rel=1e-8)
+    assert equilibria.distance_up_to_motion(cg.x, exact.x) < 1e-3

@@ -1,0 +1,77 @@
+"""Exponents of <|kappa_n|> and <K> at the onset of the two stored films.
+
+The onset is fitted with the law, or is where the planar film's eigenvalue crosses zero
+(special_points.py). Loads: 21 distances from 1e-4 to 1e-2 of the onset, swept downwards.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from eulerplateau.continuation import Settings, first_point
+from eulerplateau.curvature import loop_frame, total_gauss_curvature
+from eulerplateau.exploration import Limits, explore
+from eulerplateau.mesh import DiskMesh
+from eulerplateau.meshing import load_mesh
+from eulerplateau.newton import solve
+from eulerplateau.problem import Problem, make_problem
+from eulerplateau.runs.sweep import sweep
+from eulerplateau.scaling import fit_power
+
+MESHES = Path(__file__).parents[1] / "meshes"
+FILMS = {"stretched hexagon": "elongated.vtp", "regular hexagon": "hexagon.vtp"}
+DISTANCES = np.geomspace(1e-2, 1e-4, 21)
+WINDOW = (600.0, 900.0)
+
+
+@click.command()
+def main() -> None:
+    """Print the exponents as a Markdown table."""
+    click.echo("| film | quantity | n, onset fitted | n, onset from the eigenvalue |")
+    click.echo("|---|---|---:|---:|")
+    for film, file in FILMS.items():
+        mesh = load_mesh(MESHES / file)
+        problem = make_problem(mesh)
+        onset, error = locate(mesh, problem)
+        loads = onset * (1 + DISTANCES)
+        values = np.array(follow(mesh, problem, loads))
+        for name, column in zip((r"⟨\|κₙ\|⟩", "⟨K⟩"), values.T, strict=True):
+            free, fixed = (fit_power(loads, column, onset=o) for o in (None, onset))
+            click.echo(
+                f"| {film} | {name} | {free.exponent:.5f} ± {free.exponent_error:.5f} | "
+                f"{fixed.exponent:.5f} ± {fixed.exponent_error:.5f} |"
+            )
+        click.echo(f"| {film} | onset | | {onset:.8f} ± {error:.0e} |")
+
+
+def locate(mesh: DiskMesh, problem: Problem) -> tuple[float, float]:
+    """Return the load at which the planar film loses stability, and its error."""
+    flat = solve(problem, mesh.x, np.zeros(mesh.n_b), WINDOW[0])
+    settings = Settings(load_range=WINDOW, load_unit=WINDOW[1])
+    start = first_point(problem, flat.x[mesh.loop], WINDOW[0], settings)
+    visits = explore(problem, start, settings, Limits(special_points=0))
+    special = next(v.special for v in visits if v.special is not None)
+    return special.point.load, special.load_error
+
+
+def follow(
+    mesh: DiskMesh, problem: Problem, loads: np.ndarray
+) -> list[tuple[float, float]]:
+    """Return <|kappa_n|> and <K> at falling loads."""
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(mesh.n_v)
+    start = mesh.x + np.outer(noise, [0.0, 0.0, 1.0])
+    found = []
+    for state in sweep(problem, start, loads.tolist(), solve):
+        frame = loop_frame(mesh, state.x)
+        bent = float(np.abs(frame.kappa_n) @ frame.mean_lengths)
+        found.append((bent, total_gauss_curvature(mesh, state.x)))
+    return found
+
+
+if __name__ == "__main__":
+    with threadpool_limits(1, user_api="blas"):
+        main()

@@ -1,10 +1,9 @@
-"""The command line as a shell sees it: exit codes, folders, and what it loads."""
+"""The command line as a shell sees it: exit codes, folders, one line for every mistake."""
 
 from __future__ import annotations
 
 import json
 import signal
-import statistics
 import subprocess
 import sys
 import time
@@ -16,17 +15,16 @@ from eulerplateau.mesh import DiskMesh
 from eulerplateau.meshing import load_mesh, write_mesh
 from eulerplateau.output.table import COLUMNS, read_rows
 
-HEAVY = {"gmsh", "pyvista", "trimesh", "matplotlib", "meshio"}
 Shell = subprocess.CompletedProcess[str]
 
 
-def command(*words: object, python: tuple[str, ...] = ()) -> list[str]:
-    return [sys.executable, *python, "-m", "eulerplateau", *map(str, words)]
+def command(*words: object) -> list[str]:
+    return [sys.executable, "-m", "eulerplateau", *map(str, words)]
 
 
-def run(*words: object, python: tuple[str, ...] = (), cwd: Path | None = None) -> Shell:
+def run(*words: object, cwd: Path | None = None) -> Shell:
     return subprocess.run(
-        command(*words, python=python), cwd=cwd, capture_output=True, text=True, check=False
+        command(*words), cwd=cwd, capture_output=True, text=True, check=False
     )
 
 
@@ -77,24 +75,11 @@ def test_table_has_the_promised_columns_in_the_promised_order(spec: Path) -> Non
     sweep(spec)
     header = (spec.with_suffix("") / "sweep.csv").read_text().splitlines()[0]
     assert header == ",".join(COLUMNS)
-    assert header.split(",")[:16] == [
-        "step",
-        "kL3_alpha",
-        "sigma_hat",
-        "energy",
-        "film_energy",
-        "bending_energy",
-        "abs_kappa_n",
-        "total_gauss_curvature",
-        "area",
-        "n_unstable",
-        "lowest_eigenvalue",
-        "residual",
-        "length_error",
-        "iterations",
-        "seconds",
-        "status",
-    ]
+    assert header.startswith(
+        "step,kL3_alpha,sigma_hat,energy,film_energy,bending_energy,abs_kappa_n,"
+        "total_gauss_curvature,area,n_unstable,lowest_eigenvalue,residual,length_error,"
+        "iterations,seconds,status,"
+    )
     assert {"max_turning", "waist_twist", "self_intersections", "aspect"} < set(COLUMNS)
 
 
@@ -294,52 +279,3 @@ def test_mesh_command_ends_with_the_code_of_what_went_wrong(tmp_path: Path) -> N
     good.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n")
     (tmp_path / "file").write_text("in the way")
     assert_fails(run("mesh", good, "-o", tmp_path / "file" / "a.vtp"), 5, "file")
-
-
-def test_sweep_on_a_stored_mesh_loads_no_mesher_and_no_plotting_library(
-    spec: Path,
-) -> None:
-    result = run("sweep", "--no-pictures", "--quiet", spec, python=("-X", "importtime"))
-    assert result.returncode == 0
-    loaded = {
-        line.split("|")[-1].strip().partition(".")[0]
-        for line in result.stderr.splitlines()
-        if line.startswith("import time:")
-    }
-    assert {"numpy", "scipy", "numba", "eulerplateau"} <= loaded
-    assert not loaded & HEAVY
-
-
-def test_help_loads_no_numerical_library() -> None:
-    """What makes it quick, whatever the machine."""
-    for words in (("--help",), ("sweep", "--help"), ("mesh", "--help"), ("--version",)):
-        result = run(*words, python=("-X", "importtime"))
-        assert result.returncode == 0
-        loaded = {
-            line.split("|")[-1].strip().partition(".")[0]
-            for line in result.stderr.splitlines()
-            if line.startswith("import time:")
-        }
-        assert not loaded & (HEAVY | {"numpy", "scipy", "numba", "pydantic", "tqdm"})
-
-
-def test_help_answers_within_three_tenths_of_a_second() -> None:
-    """Of processor time, which other work on the machine does not lengthen."""
-    clock = (
-        "import resource, subprocess, sys\n"
-        "subprocess.run(sys.argv[1:], check=True, capture_output=True)\n"
-        "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
-        "sys.stdout.write(str(used.ru_utime + used.ru_stime))\n"
-    )
-    times = [
-        float(
-            subprocess.run(
-                [sys.executable, "-c", clock, *command("--help")],
-                capture_output=True,
-                text=True,
-                check=True,
-            ).stdout
-        )
-        for _ in range(5)
-    ]
-    assert statistics.median(times) < 0.3

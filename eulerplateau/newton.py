@@ -45,7 +45,7 @@ _NEAR = 0.1
 
 # Up to this many loop vertices the whole tangent space is searched, beyond it a subspace;
 # a rough start is then smoothed on a loop of as many.
-_DENSE_LOOP = 128
+DENSE_LOOP = 128
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def solve(
     if state is None:
         state, status = descent.run(x_loop)
     balanced = state.model.residual <= RESIDUAL_TOLERANCE
-    if state.stability is None and (balanced or len(x_loop) <= _DENSE_LOOP):
+    if state.stability is None and (balanced or len(x_loop) <= DENSE_LOOP):
         state = replace(state, stability=_stability(energy, state.model))
     found = _record(problem, state, load, status)
     return replace(found, seconds=time.perf_counter() - started)
@@ -95,9 +95,9 @@ def _start(energy: LoopEnergy, x: FloatArray, max_iterations: int) -> FloatArray
     minimising on a coarse one.
     """
     given = close_with_lengths(energy.loop, x)
-    if len(x) <= _DENSE_LOOP:
+    if len(x) <= DENSE_LOOP:
         return given
-    coarse = coarsen(energy, _DENSE_LOOP)
+    coarse = coarsen(energy, DENSE_LOOP)
     nowhere = np.zeros_like(x)
     shape = close_with_lengths(coarse.energy.loop, coarse.restrict(x))
     if shape is None:
@@ -149,7 +149,7 @@ class _Descent:
         self, x: FloatArray, multipliers: FloatArray, iteration: int
     ) -> _State | None:
         """Return the minimum that Newton's equations lead to from near by, if they do."""
-        if len(x) > _DENSE_LOOP:
+        if len(x) > DENSE_LOOP:
             return None
         limit = self.max_iterations - iteration
         found = settle(self.energy, x, multipliers, limit, self.observe)
@@ -193,13 +193,13 @@ def loop_energy(problem: Problem, load: float) -> LoopEnergy:
 def _model(
     energy: LoopEnergy, x: FloatArray, before: TangentModel | None = None
 ) -> TangentModel:
-    if len(x) <= _DENSE_LOOP:
+    if len(x) <= DENSE_LOOP:
         return tangent_model(energy, x)
     return subspace_model(energy, x, before)
 
 
 def _stability(energy: LoopEnergy, model: TangentModel) -> Stability:
-    if len(model.x) <= _DENSE_LOOP:
+    if len(model.x) <= DENSE_LOOP:
         return stability(model)
     return lowest_modes(energy, model)[0]
 
@@ -272,4 +272,9 @@ def _record(problem: Problem, state: _State, load: float, status: Status) -> Equ
         result = replace(result, status=Status.CONVERGED if minimum else Status.SADDLE)
     elif status is Status.CONVERGED and not balanced:
         result = replace(result, status=Status.STALLED)
-    return replace(result, n_unstable=found.n_unstable, lowest_eigenvalue=found.lowest)
+    return replace(
+        result,
+        n_unstable=found.n_unstable,
+        n_neutral=found.n_neutral,
+        lowest_eigenvalue=found.lowest,
+    )

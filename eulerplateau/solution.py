@@ -52,8 +52,8 @@ class Equilibrium:
         |g_bending + g_film + J^T lambda|_inf over the largest of the three terms' |.|_inf.
     length_error : float
         max |l_v / s_v - 1| over the loop's edges.
-    n_unstable, lowest_eigenvalue :
-        Stability, None where the solver does not compute it.
+    n_unstable, n_neutral, lowest_eigenvalue :
+        Stability (stability.py), None where the solver does not compute it.
     """
 
     x: FloatArray
@@ -68,6 +68,7 @@ class Equilibrium:
     seconds: float
     status: Status
     n_unstable: int | None = None
+    n_neutral: int | None = None
     lowest_eigenvalue: float | None = None
 
     @property

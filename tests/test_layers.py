@@ -21,7 +21,7 @@ LAYERS = (
     "condensation curvature dissection film inextensible intersections loop "
     "measures meshing scaling symmetry",
     "cell problem tangent",
-    "coarsening conjugate_gradient loop_model newton primal_dual shifted_inverse "
+    "coarsening conjugate_gradient loop_model modes newton primal_dual shifted_inverse "
     "stability trust_region",
     "continuation exploration special_points stretch",
     "branch_plots ensemble gallery output planar_plots plots render run_plots runs",

@@ -192,7 +192,7 @@ def test_newton_by_subspaces_reaches_what_the_dense_newton_reaches(
     start, unknown = shapes.crumpled(elongated, 1e-3), np.zeros(elongated.n_b)
     found = {}
     for name, largest in (("dense", elongated.n_b), ("subspace", 40)):
-        monkeypatch.setattr(newton, "_DENSE_LOOP", largest)
+        monkeypatch.setattr(newton, "DENSE_LOOP", largest)
         x, found[name] = start, []
         for load in (1.0, 300.0, 650.0, 700.0, 800.0, 1500.0, 2500.0):
             found[name].append(newton.solve(problem, x, unknown, load))
@@ -210,7 +210,7 @@ def test_newton_by_subspaces_reaches_what_the_dense_newton_reaches(
 def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_subspaces(
     hexagon: DiskMesh, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(newton, "_DENSE_LOOP", 40)
+    monkeypatch.setattr(newton, "DENSE_LOOP", 40)
     problem = make_problem(hexagon)
     x = shapes.crumpled(hexagon, 1e-3)
     for load in (800.0, 860.0, 900.0, 1000.0):

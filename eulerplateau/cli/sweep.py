@@ -146,6 +146,12 @@ def _report(result: RunResult, drawn: list[str], quiet: bool) -> None:
             f"{row.status.advice}",
             err=True,
         )
+    if result.neutral and not quiet:
+        click.echo(
+            f"{result.folder}: {len(result.neutral)} rows are neutral: their lowest "
+            "eigenvalue cannot be told from zero (run.json lists them)",
+            err=True,
+        )
     if not quiet:
         converged = len(result.rows) - len(result.failures)
         click.echo(

@@ -150,6 +150,18 @@ class SolverSettings(Settings):
     max_iterations: int | None = Field(default=None, ge=1)
 
 
+class OutputSettings(Settings):
+    """What is written beside the rows and the plain shapes.
+
+    Attributes
+    ----------
+    modes : int
+        So many of the lowest modes go into every shape of a sweep, as vector fields.
+    """
+
+    modes: int = Field(default=0, ge=0)
+
+
 class BranchSettings(Settings):
     """Where `eulerplateau branches` ends; a sweep does not use it.
 
@@ -186,6 +198,7 @@ class RunSpec(Settings):
     start: StartSettings = StartSettings()
     sweep: SweepSettings
     solver: SolverSettings = SolverSettings()
+    output: OutputSettings = OutputSettings()
     branches: BranchSettings = BranchSettings()
 
     @model_validator(mode="after")

@@ -19,6 +19,7 @@ from eulerplateau import __version__
 from eulerplateau.measures import measure, waist_path
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.meshing import generate, load_mesh
+from eulerplateau.modes import lowest_modes
 from eulerplateau.output.folder import RunFolder
 from eulerplateau.output.table import Row
 from eulerplateau.problem import Problem, make_problem
@@ -35,10 +36,15 @@ _BLAS_THREADS = 1
 
 @dataclass(frozen=True)
 class RunResult:
-    """What a run came to: where, how many loads, which of them did not converge."""
+    """What a run came to.
+
+    `neutral` numbers the rows with an eigenvalue that cannot be told from zero: whether
+    they are stable is not known.
+    """
 
     folder: Path
     rows: tuple[Row, ...]
+    neutral: tuple[int, ...]
     seconds: float
 
     @property
@@ -59,6 +65,7 @@ def carry_out(
     mesh = make_mesh(spec)
     problem = make_problem(mesh, spec.film.model)
     rows: list[Row] = []
+    neutral: list[int] = []
     summary = describe(spec, mesh)
     with (
         threadpool_limits(_BLAS_THREADS, user_api="blas"),
@@ -73,15 +80,17 @@ def carry_out(
             for step, found in enumerate(equilibria(spec, mesh, problem)):
                 shape = measure(mesh, found.x, path_across)
                 row = make_row(step, found, problem, asdict(shape))
-                folder.record(row, mesh, found.x)
+                modes = lowest_modes(problem, found, spec.output.modes)
+                folder.record(row, mesh, found.x, modes)
                 rows.append(row)
+                neutral += [step] if found.n_neutral else []
                 on_row(row)
             status = "finished"
         finally:
             seconds = time.perf_counter() - started
-            totals = _totals(rows, seconds)
+            totals = {**_totals(rows, seconds), "neutral": neutral}
             folder.write_summary({**summary, "status": status, "totals": totals})
-    return RunResult(path, tuple(rows), seconds)
+    return RunResult(path, tuple(rows), tuple(neutral), seconds)
 
 
 def make_mesh(spec: RunSpec) -> DiskMesh:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from itertools import groupby, pairwise
+from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,7 @@ from eulerplateau.output.figure import (
     new_figure,
     save,
 )
-from eulerplateau.output.states import is_planar
+from eulerplateau.output.states import is_planar, legs
 from eulerplateau.output.table import Row, read_rows
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def _draw(
         label = "not planar" if number == 0 else None
         ax.axvspan(low, high, color="0.9", linewidth=0, zorder=0, label=label)
     drawn = set()
-    for rising, leg in _legs(rows):
+    for rising, leg in legs(rows):
         good = [row for row in leg if row.converged]
         name = "load rising" if rising else "load falling"
         ax.plot(
@@ -112,19 +112,9 @@ def _draw(
     frame(ax)
 
 
-def _legs(rows: Sequence[Row]) -> list[tuple[bool, list[Row]]]:
-    """Split a sweep where its load turns; a turning point belongs to both legs."""
-    legs = []
-    steps = groupby(pairwise(rows), key=lambda pair: pair[1].kL3_alpha >= pair[0].kL3_alpha)
-    for rising, pairs in steps:
-        ends = list(pairs)
-        legs.append((rising, [ends[0][0], *(after for _, after in ends)]))
-    return legs or [(True, list(rows))]
-
-
 def _bands(rows: Sequence[Row]) -> list[tuple[float, float]]:
     """Return the ranges of load (low, high) where the first leg's film is not planar."""
-    leg = [row for row in _legs(rows)[0][1] if row.converged]
+    leg = [row for row in legs(rows)[0][1] if row.converged]
     bands = []
     for planar, alike in _planar_runs(leg):
         if not planar:

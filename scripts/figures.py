@@ -15,11 +15,11 @@ from tempfile import TemporaryDirectory
 import click
 import numpy as np
 
+from eulerplateau.output.figure import save
 from eulerplateau.output.table import Row
 from eulerplateau.planar import thresholds
 from eulerplateau.planar_plots import plot_energy, plot_gallery
 from eulerplateau.run_plots import Run, read_runs, runs_figure
-from eulerplateau.run_plots.figures import save
 from eulerplateau.run_plots.onset import fit_onset
 from eulerplateau.runs.spec import load_run
 from eulerplateau.runs.sweep import carry_out

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eulerplateau.output.files import write_whole
 
@@ -20,6 +20,11 @@ ABS_KAPPA_N = r"$\langle|\kappa_n|\rangle=\oint|\kappa_n|\,ds$"
 BLACK, BLUE, ORANGE, GREEN = "#000000", "#0072B2", "#E69F00", "#009E73"
 VERMILION, PURPLE, SKY = "#D55E00", "#CC79A7", "#56B4E9"
 
+_UNDATED: dict[str, dict[str, None]] = {
+    "pdf": {"CreationDate": None},
+    "svg": {"Date": None},
+    "png": {},
+}
 _DPI = 200
 _WIDTH, _EXTRA, _HEIGHT = 3.4, 0.6, 7.2
 # A range of loads narrower than this part of all loads gets a column of its own.
@@ -49,7 +54,17 @@ def enlarged(low: float, high: float, loads: Iterable[float]) -> tuple[float, fl
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure to the PNG file `path`, whole or not at all; raises OutputError."""
+    """Write a figure to a PNG, PDF or SVG file, whole or not at all; raises OutputError."""
+    from matplotlib import rc_context
+
+    form = path.suffix[1:].lower()
     content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=_DPI)
+    # Type 42: text in a PDF stays text. Simplified, a curve loses its corners.
+    settings: Any = {
+        "pdf.fonttype": 42,
+        "svg.hashsalt": "eulerplateau",
+        "path.simplify": False,
+    }
+    with rc_context(settings):
+        figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
     write_whole(path, content.getvalue())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from eulerplateau.output.table import Row
 
@@ -35,6 +35,16 @@ def distinct_steps(rows: Sequence[Row]) -> list[int]:
     converged = [row for row in rows if row.converged]
     states = [list(alike) for _, alike in groupby(converged, key=_kind)]
     return [_shown(state).step for state in states]
+
+
+def legs(rows: Sequence[Row]) -> list[tuple[bool, list[Row]]]:
+    """Split a sweep where its load turns; a turning point belongs to both legs."""
+    found = []
+    steps = groupby(pairwise(rows), key=lambda pair: pair[1].kL3_alpha >= pair[0].kL3_alpha)
+    for rising, pairs in steps:
+        ends = list(pairs)
+        found.append((rising, [ends[0][0], *(after for _, after in ends)]))
+    return found or [(True, list(rows))]
 
 
 def _shown(state: list[Row]) -> Row:

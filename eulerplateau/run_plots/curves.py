@@ -6,7 +6,7 @@ import json
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby, pairwise
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy as np
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import FloatArray
 from eulerplateau.output.branches import Branch, read_branches
-from eulerplateau.output.states import distinct_steps, is_planar
+from eulerplateau.output.states import distinct_steps, is_planar, legs
 from eulerplateau.output.table import BranchRow, Row, read_rows
 
 Quantity = Callable[[Row], float | None]
@@ -46,7 +46,7 @@ class Run:
     @property
     def first_leg(self) -> list[Row]:
         """The converged rows of a sweep up to where its load turns, or of branch 0."""
-        rows = list(self.branches[0].rows if self.branches else _legs(self.rows)[0][1])
+        rows = list(self.branches[0].rows if self.branches else legs(self.rows)[0][1])
         return [row for row in rows if row.converged]
 
     @property
@@ -106,7 +106,7 @@ def pieces(run: Run, quantity: Quantity) -> Iterator[Piece]:
             elif np.isfinite(values[part]).any():
                 yield Piece(branch.loads[part], values[part], stable)
     if not run.branches:
-        for rising, leg in _legs(run.rows):
+        for rising, leg in legs(run.rows):
             good = [row for row in leg if row.converged]
             loads = np.array([row.kL3_alpha for row in good])
             values = _values(good, quantity)
@@ -153,16 +153,6 @@ def _notes(folder: Path) -> tuple[str, str]:
         return f"{about['mesh']['vertices']} vertices", about["spec"]["solver"]["name"]
     except (OSError, ValueError, KeyError, TypeError):
         return "", ""
-
-
-def _legs(rows: Sequence[Row]) -> list[tuple[bool, list[Row]]]:
-    """Split a sweep where its load turns; a turning point belongs to both legs."""
-    legs = []
-    steps = groupby(pairwise(rows), key=lambda pair: pair[1].kL3_alpha >= pair[0].kL3_alpha)
-    for rising, pairs in steps:
-        ends = list(pairs)
-        legs.append((rising, [ends[0][0], *(after for _, after in ends)]))
-    return legs or [(True, list(rows))]
 
 
 def _stretches(branch: Branch) -> Iterator[tuple[bool, slice]]:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eulerplateau.mesh import FloatArray
 from eulerplateau.output.child import draw_in_child
-from eulerplateau.output.files import write_whole
+from eulerplateau.output.figure import save
 from eulerplateau.output.folder import shape_name
 from eulerplateau.output.states import is_planar
 from eulerplateau.output.table import Row
@@ -37,18 +36,12 @@ if TYPE_CHECKING:
 WHAT = (*QUANTITIES, "onset")
 
 _SECONDS = 300.0
-_DPI = 200
 _PER_LINE = 6
 # A curve steeper than this, in shares of its panel, has its numbers beside it.
 _STEEP = 1.5
 # Inches.
 _COLUMN, _EXTRA, _PANEL, _TITLE = 3.4, 0.6, 3.0, 0.25
 # What a file says of when it was drawn, left out: one run, one file.
-_UNDATED: dict[str, dict[str, None]] = {
-    "pdf": {"CreationDate": None},
-    "svg": {"Date": None},
-    "png": {},
-}
 
 
 def draw_plot(folders: Sequence[Path], what: str, path: Path) -> bool:
@@ -65,23 +58,6 @@ def plot_runs(runs: Sequence[Run], what: str, path: Path) -> None:
     Raises OutputError if the file cannot be written, or what is to be seen is not there.
     """
     save(runs_figure(runs, what), path)
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure to a PNG, PDF or SVG file, whole or not at all; raises OutputError."""
-    from matplotlib import rc_context
-
-    form = path.suffix[1:].lower()
-    content = io.BytesIO()
-    # Type 42: text in a PDF stays text. Simplified, a curve loses its corners.
-    settings: Any = {
-        "pdf.fonttype": 42,
-        "svg.hashsalt": "eulerplateau",
-        "path.simplify": False,
-    }
-    with rc_context(settings):
-        figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
-    write_whole(path, content.getvalue())
 
 
 def runs_figure(

@@ -19,8 +19,6 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     The film follows the loop; the largest displacement is 1. On loops beyond DENSE_LOOP
     vertices as many modes are known as are unstable or neutral, and one more.
     """
-    if count == 0:
-        return {}
     energy = loop_energy(problem, found.load)
     x_loop = found.x[problem.loop_vertices]
     if len(x_loop) <= DENSE_LOOP:

@@ -31,7 +31,7 @@ from scipy.linalg import LinAlgError
 from scipy.linalg.lapack import dsysv, dsytrf, dsytrs
 
 from eulerplateau.inextensible import LengthMetric, length_metric
-from eulerplateau.loop import Loop
+from eulerplateau.loop import Loop, backward_differences, differences
 from eulerplateau.mesh import FloatArray, IntArray
 from eulerplateau.tangent import RIGID_MOTIONS, rigid_motions
 
@@ -72,15 +72,12 @@ class TangentSpace:
 
     def differences(self, values: FloatArray) -> FloatArray:
         """Return D (values / sqrt(<s>)) for values (n_b, m)."""
-        plain = values / self.root[:, None]
-        steps: FloatArray = np.roll(plain, -1, axis=0) - plain
-        return steps
+        return differences(values / self.root[:, None])
 
     def pull(self, tensions: FloatArray) -> FloatArray:
         """Return J^T tensions (n_b, 3, m), for tensions (n_b, m)."""
         along = self.direction[:, :, None] * tensions[:, None, :]
-        fields: FloatArray = np.roll(along, 1, axis=0) - along
-        return fields / self.root[:, None, None]
+        return -backward_differences(along) / self.root[:, None, None]
 
     def project(self, fields: FloatArray) -> FloatArray:
         """Return the nearest tangent fields to `fields` (n_b, 3, m)."""

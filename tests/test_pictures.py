@@ -17,7 +17,6 @@ from test_run_folder import start
 
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.output.child import draw_in_child
-from eulerplateau.output.folder import picture_name
 from eulerplateau.output.states import distinct_steps
 from eulerplateau.output.table import Row, RowWriter
 from eulerplateau.output.vtk import Shape
@@ -185,8 +184,10 @@ def test_render_shows_all_of_each_film_and_both_its_sides(
     films = [twisted(mesh, 0.0), twisted(mesh, 0.4) @ turn, twisted(mesh, 0.99) @ turn.T]
     record(tmp_path, mesh, films)
     assert draw_shapes(tmp_path, [0, 2])
-    assert not (tmp_path / picture_name(1)).exists()
-    disk, folded = (read_png(tmp_path / picture_name(step)) for step in (0, 2))
+    assert not (tmp_path / "pictures" / "shape_0001.png").exists()
+    disk, folded = (
+        read_png(tmp_path / "pictures" / f"shape_{step:04d}.png") for step in (0, 2)
+    )
     for image in (disk, folded):
         frame = np.concatenate([image[0], image[-1], image[:, 0], image[:, -1]])
         assert (frame == 1.0).all()

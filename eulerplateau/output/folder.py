@@ -41,11 +41,6 @@ def shape_name(step: int) -> str:
     return f"shapes/shape_{step:04d}.vtp"
 
 
-def picture_name(step: int) -> str:
-    """Return the path of a step's rendered picture inside the run folder."""
-    return f"pictures/shape_{step:04d}.png"
-
-
 class RunFolder:
     """The folder of one run; make it with `create`, use it in a `with` statement.
 

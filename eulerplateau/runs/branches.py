@@ -24,7 +24,14 @@ from eulerplateau.output.folder import RunFolder
 from eulerplateau.output.table import BranchRow
 from eulerplateau.problem import Problem, make_problem
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.sweep import describe, make_mesh, make_row, start_shape
+from eulerplateau.runs.sweep import (
+    BLAS_THREADS,
+    blas_threads,
+    describe,
+    make_mesh,
+    make_row,
+    start_shape,
+)
 from eulerplateau.solution import Status
 from eulerplateau.special_points import SpecialPoint
 
@@ -60,11 +67,12 @@ def carry_out(
     rows: list[BranchRow] = []
     special: list[dict[str, Any]] = []
     with (
-        threadpool_limits(1, user_api="blas"),
+        threadpool_limits(BLAS_THREADS, user_api="blas"),
         RunFolder.create(
             path, {**summary, "status": "running"}, "branches", BranchRow
         ) as folder,
     ):
+        summary["blas_threads"] = blas_threads()
         across = waist_path(mesh)
         start = _start(spec, mesh, problem, settings)
         status = "interrupted"

@@ -19,7 +19,6 @@ from eulerplateau import __version__
 from eulerplateau.measures import measure, waist_path
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.meshing import generate, load_mesh
-from eulerplateau.modes import lowest_modes
 from eulerplateau.output.folder import RunFolder
 from eulerplateau.output.table import Row
 from eulerplateau.problem import Problem, make_problem
@@ -31,7 +30,7 @@ Solver = Callable[[Problem, FloatArray, FloatArray, float], Equilibrium]
 SOLVER_MODULES = {"newton": "newton", "cg": "conjugate_gradient"}
 
 # Matrices here are as large as the loop: a second thread waits more than it works.
-_BLAS_THREADS = 1
+BLAS_THREADS = 1
 
 
 @dataclass(frozen=True)
@@ -68,20 +67,17 @@ def carry_out(
     neutral: list[int] = []
     summary = describe(spec, mesh)
     with (
-        threadpool_limits(_BLAS_THREADS, user_api="blas"),
+        threadpool_limits(BLAS_THREADS, user_api="blas"),
         RunFolder.create(path, {**summary, "status": "running"}) as folder,
     ):
-        summary["blas_threads"] = [
-            pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"
-        ]
+        summary["blas_threads"] = blas_threads()
         path_across = waist_path(mesh)
         status = "interrupted"
         try:
             for step, found in enumerate(equilibria(spec, mesh, problem)):
                 shape = measure(mesh, found.x, path_across)
                 row = make_row(step, found, problem, asdict(shape))
-                modes = lowest_modes(problem, found, spec.output.modes)
-                folder.record(row, mesh, found.x, modes)
+                folder.record(row, mesh, found.x, _modes(spec, problem, found))
                 rows.append(row)
                 neutral += [step] if found.n_neutral else []
                 on_row(row)
@@ -91,6 +87,21 @@ def carry_out(
             totals = {**_totals(rows, seconds), "neutral": neutral}
             folder.write_summary({**summary, "status": status, "totals": totals})
     return RunResult(path, tuple(rows), tuple(neutral), seconds)
+
+
+def blas_threads() -> list[int]:
+    """Return the threads of each BLAS that is loaded, as they are now."""
+    pools = threadpool_info()
+    return [pool["num_threads"] for pool in pools if pool["user_api"] == "blas"]
+
+
+def _modes(spec: RunSpec, problem: Problem, found: Equilibrium) -> dict[str, FloatArray]:
+    if spec.output.modes == 0:
+        return {}
+    # Loaded only where it is asked for: a sweep by cg has no use for newton's modules.
+    from eulerplateau.modes import lowest_modes
+
+    return lowest_modes(problem, found, spec.output.modes)
 
 
 def make_mesh(spec: RunSpec) -> DiskMesh:

@@ -26,7 +26,6 @@ from eulerplateau.output.figure import (
     BLACK,
     BLUE,
     GREEN,
-    LOAD,
     ORANGE,
     PURPLE,
     SKY,
@@ -36,7 +35,8 @@ from eulerplateau.output.figure import (
     new_figure,
     save,
 )
-from eulerplateau.output.table import BranchRow, read_rows
+from eulerplateau.output.reading import read_table
+from eulerplateau.output.table import BranchRow
 from eulerplateau.special_points import BIFURCATION, FOLD
 
 if TYPE_CHECKING:
@@ -54,6 +54,7 @@ _MARKERS: dict[str, dict[str, Any]] = {
     BIFURCATION: {**_POINT, "marker": "o", "markersize": 4.5, "markerfacecolor": "white"},
     FOLD: {**_POINT, "marker": "D", "markersize": 4.0},
 }
+_NOT_CONVERGED: dict[str, Any] = {**_POINT, "marker": "x", "markersize": 5.0}
 _LEADER: dict[str, Any] = {
     "arrowstyle": "-", "linewidth": 0.5, "relpos": (0.5, 0.0), "shrinkA": 0, "shrinkB": 0
 }  # fmt: skip
@@ -105,7 +106,7 @@ def plot_branches(rows: Sequence[BranchRow], kinds: Mapping[int, str], path: Pat
         for ax in line:
             _draw(ax, panel, branches, kinds)
     for column, loads in zip(axes.T, (None, window), strict=False):
-        column[-1].set_xlabel(LOAD)
+        column[-1].set_xlabel(rows[0].load_name.label)
         if loads is not None:
             column[0].set_xlim(*loads)
         for panel, ax in zip(panels, column, strict=True):
@@ -127,7 +128,7 @@ def _panels(branches: Sequence[Branch]) -> tuple[_Panel, ...]:
 
 def _loads(rows: Iterable[BranchRow]) -> dict[int, float]:
     """Return the loads of the special points by number."""
-    return {row.special: row.kL3_alpha for row in rows if row.special is not None}
+    return {row.special: row.load for row in rows if row.special is not None}
 
 
 def _draw(
@@ -146,7 +147,10 @@ def _draw(
                 )
             for row, value in zip(branch.rows, curve, strict=True):
                 if row.special is not None:
-                    ax.plot(row.kL3_alpha, value, **_MARKERS[kinds[row.special]])
+                    ax.plot(row.load, value, **_MARKERS[kinds[row.special]])
+            bad = np.array([not row.converged for row in branch.rows])
+            if bad.any():
+                ax.plot(branch.loads[bad], curve[bad], **_NOT_CONVERGED)
     frame(ax)
     ax.ticklabel_format(useOffset=False)
 
@@ -247,6 +251,8 @@ def _legend(figure: Figure, branches: Sequence[Branch], kinds: Sequence[str]) ->
     lines = [Line2D([], [], color=BLACK, label="stable", **_STABLE)]
     lines.append(Line2D([], [], color=BLACK, label="unstable", **_UNSTABLE))
     lines += [Line2D([], [], label=kind, **_MARKERS[kind]) for kind in kinds]
+    if any(not row.converged for branch in branches for row in branch.rows):
+        lines.append(Line2D([], [], label="not converged", **_NOT_CONVERGED))
     colours = _colours(branches)
     alike: dict[int | None, list[Branch]] = {}
     for branch in branches:
@@ -255,10 +261,11 @@ def _legend(figure: Figure, branches: Sequence[Branch], kinds: Sequence[str]) ->
         numbers = ", ".join(str(branch.number) for branch in members)
         name = f"branch {numbers}" if len(members) == 1 else f"branches {numbers}"
         if origin is not None:
-            name += f", from {members[0].rows[0].kL3_alpha:.6g}"
+            name += f", from {members[0].rows[0].load:.6g}"
         lines.append(Line2D([], [], color=colours[origin], linewidth=1.6, label=name))
+    wide = 3 if len(figure.axes) > 3 else 2
     figure.legend(
-        handles=lines, loc="outside upper center", ncols=3, frameon=False, fontsize=8
+        handles=lines, loc="outside upper center", ncols=wide, frameon=False, fontsize=8
     )
 
 
@@ -274,7 +281,7 @@ def _read_kinds(path: Path) -> dict[int, str]:
 if __name__ == "__main__":
     _folder = Path(sys.argv[1])
     plot_branches(
-        read_rows(_folder / "branches.csv", BranchRow),
+        [row for row in read_table(_folder) if isinstance(row, BranchRow)],
         _read_kinds(_folder / "special_points.csv"),
         _folder / "branches.png",
     )

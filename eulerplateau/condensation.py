@@ -20,7 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg import cho_solve, cholesky, solve_triangular
 from scipy.sparse import csc_array, csr_array
 from threadpoolctl import threadpool_limits
 
@@ -32,13 +32,14 @@ from eulerplateau.mesh import FloatArray, IntArray
 class _Part:
     """Vertices start ... stop - 1 of the order, which hang on those `around` them.
 
-    In equilibrium x[start:stop] = extension @ x[around].
+    In equilibrium x[start:stop] = extension @ x[around]; `factor` is Cholesky's, lower.
     """
 
     start: int
     stop: int
     around: IntArray
     extension: FloatArray
+    factor: FloatArray
 
 
 @dataclass(frozen=True)
@@ -55,9 +56,32 @@ class Condensation:
     _order: IntArray
     _parts: tuple[_Part, ...]
 
+    def force(self, x_loop: FloatArray) -> FloatArray:
+        """Return the gradient of tr(x_b^T S x_b) (n_b, 3)."""
+        return 2 * self.stiffness @ x_loop
+
+    def displacement(self, x_loop: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a displacement of its loop (n_b, 3)."""
+        return self.extend(moved)
+
+    def solve(self, forces: FloatArray) -> FloatArray:
+        """Return L^-1 f (n, m) for forces (n, m), of a matrix that was factorised whole."""
+        ordered = forces[self._order]
+        for part in self._parts:
+            own = ordered[part.start : part.stop]
+            ordered[part.around] += part.extension.T @ own
+            ordered[part.start : part.stop] = cho_solve(
+                (part.factor, True), own, check_finite=False
+            )
+        for part in reversed(self._parts):
+            ordered[part.start : part.stop] += part.extension @ ordered[part.around]
+        x = np.empty_like(ordered)
+        x[self._order] = ordered
+        return x
+
     def extend(self, x_loop: FloatArray) -> FloatArray:
-        """Return the relaxed film (n_v, 3) on a loop (n_b, 3)."""
-        ordered = np.empty((len(self._order), 3))
+        """Return the relaxed film (n_v, m) on a loop (n_b, m), coordinate by coordinate."""
+        ordered = np.empty((len(self._order), x_loop.shape[1]))
         ordered[len(ordered) - len(x_loop) :] = x_loop
         for part in reversed(self._parts):
             ordered[part.start : part.stop] = part.extension @ ordered[part.around]
@@ -66,19 +90,40 @@ class Condensation:
         return x
 
 
+def factorise(matrix: csc_array, pieces: list[IntArray]) -> Condensation:
+    """Factorise a symmetric matrix (n, n), its rows eliminated piece by piece, to `solve`.
+
+    Raises LinAlgError unless it is positive definite. The caller sees to it that BLAS has
+    one thread.
+    """
+    return _condense(matrix.tocsr(), np.zeros(0, dtype=np.int64), pieces)
+
+
 def condense(laplacian: csc_array, loop: IntArray, interior: IntArray) -> Condensation:
-    """Eliminate `interior` from `laplacian` (n_v, n_v), symmetric."""
+    """Eliminate `interior` from `laplacian` (n_v, n_v), symmetric.
+
+    Raises LinAlgError unless what is eliminated is positive definite.
+    """
     rows = laplacian.tocsr()
     pieces = dissect(rows, loop, interior)
+    # Blocks of a hundred rows: two threads would mostly wait for each other.
+    with threadpool_limits(1, user_api="blas"):
+        found = _condense(rows, loop, pieces)
+    # A translation costs nothing. Where slivers make weights of 1e8 that cancel, rounding
+    # would have it cost something, and leave a pull on the loop that nothing balances.
+    diagonal = np.diag_indices_from(found.stiffness)
+    found.stiffness[diagonal] -= found.stiffness.sum(axis=1)
+    return found
+
+
+def _condense(rows: csr_array, loop: IntArray, pieces: list[IntArray]) -> Condensation:
     order = np.concatenate([*pieces, loop])
     rows = rows[order][:, order]
     rows.sort_indices()
-    stiffness = rows[len(interior) :, len(interior) :].toarray()
+    n_i = len(order) - len(loop)
+    stiffness = rows[n_i:, n_i:].toarray()
     stops = np.cumsum([len(piece) for piece in pieces], dtype=np.int64)
-    # Blocks of a hundred rows: two threads would mostly wait for each other.
-    with threadpool_limits(1, user_api="blas"):
-        parts = _eliminate(rows, stops, stiffness)
-    return Condensation(stiffness, order, tuple(parts))
+    return Condensation(stiffness, order, tuple(_eliminate(rows, stops, stiffness)))
 
 
 def _eliminate(rows: csr_array, stops: IntArray, stiffness: FloatArray) -> list[_Part]:
@@ -107,8 +152,8 @@ def _eliminate(rows: csr_array, stops: IntArray, stiffness: FloatArray) -> list[
         for below, remainder in left:
             place = local[below]
             front[np.ix_(place, place)] += remainder
-        extension, remainder = _condense_dense(front, own)
-        parts.append(_Part(start, stop, around, extension))
+        extension, remainder, factor = _condense_dense(front, own)
+        parts.append(_Part(start, stop, around, extension, factor))
         if len(around) and around[0] < n_i:
             owner = int(np.searchsorted(stops, around[0], side="right"))
             waiting.setdefault(owner, []).append((around, remainder))
@@ -118,12 +163,15 @@ def _eliminate(rows: csr_array, stops: IntArray, stiffness: FloatArray) -> list[
     return parts
 
 
-def _condense_dense(front: FloatArray, own: int) -> tuple[FloatArray, FloatArray]:
+def _condense_dense(
+    front: FloatArray, own: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Eliminate the first `own` rows of a symmetric matrix.
 
-    Returns -F_11^-1 F_12 and F_22 - F_21 F_11^-1 F_12, symmetric to the last bit.
+    Returns -F_11^-1 F_12, F_22 - F_21 F_11^-1 F_12, symmetric to the last bit, and the
+    factor of F_11.
     """
     factor = cholesky(front[:own, :own], lower=True, check_finite=False)
     half = solve_triangular(factor, front[:own, own:], lower=True, check_finite=False)
     extension = solve_triangular(factor, half, lower=True, trans=1, check_finite=False)
-    return -extension, front[own:, own:] - half.T @ half
+    return -extension, front[own:, own:] - half.T @ half, factor

@@ -1,4 +1,4 @@
-"""The paper's method: scipy's conjugate gradients over all mesh vertices.
+"""The paper's method: scipy's conjugate gradients over loop and film together.
 
 The edge lengths are kept by an augmented Lagrangian,
 
@@ -7,8 +7,9 @@ The edge lengths are kept by an augmented Lagrangian,
 Conjugate gradients stall when the line search compares energies that differ by rounding
 only. So the unknown is the displacement u from a base point, A is evaluated as the
 difference A(x0 + u) - A(x0), and the base moves along every few thousand iterations.
-A saddle balances its forces too: a result is accepted only if a small transverse kick and
-a second solve come back to the same energy.
+A saddle balances its forces too: a result is accepted only if a small kick and a second
+solve come back to the same energy. What the unknowns are depends on the film
+(trial_space.py); a soap film's are chosen anew at every base point.
 """
 
 from __future__ import annotations
@@ -18,12 +19,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import LinAlgError
 from scipy.optimize import minimize
 
 from eulerplateau import kernels
+from eulerplateau.area_film import AreaFilm
 from eulerplateau.mesh import FloatArray
+from eulerplateau.plane_film import PlaneFilm
 from eulerplateau.problem import Problem
+from eulerplateau.repair import carried
 from eulerplateau.solution import LENGTH_TOLERANCE, RESIDUAL_TOLERANCE, Equilibrium, Status
+from eulerplateau.trial_space import centred, trial_space
 
 # A tenfold tighter residual for every update of the multipliers; the floor leaves the
 # multipliers' last update room below the accepted tolerance.
@@ -35,6 +41,11 @@ _ITERATIONS_PER_BASE = 2000
 _KICKS = 5
 _KICK_SIZE = 1e-3
 _SAME_ENERGY = 1e-8
+# Forces inside a film at rest over the largest of its forces on the loop.
+_FILM_BALANCE = 1e-3
+# Relative length error above which the penalty may have to grow, and the least penalty.
+_STRETCHED = 1e-2
+_STIFFER_THAN_BENDING = 1000.0
 
 
 @dataclass(frozen=True)
@@ -61,16 +72,25 @@ def solve(
     `observe` is shown the loop (n_b, 3) each time the base point moves.
     """
     started = time.perf_counter()
-    best = _descend(problem, x, multipliers, load, max_iterations, observe)
+    if (refused := problem.refused(x, load)) is not None:
+        return refused
+    film = problem.film
+    # Across the loop's plane, or along it where there is nothing else.
+    axis = 0 if isinstance(film, PlaneFilm) else 2
+    start = film.flattened(x) if isinstance(film, PlaneFilm) else x
+    best = _descend(problem, start, multipliers, load, max_iterations, observe)
     spent = best.iterations
     confirmed = False
     rng = np.random.default_rng(0)
     for _ in range(_KICKS):
         if not best.converged:
             break
-        kicked = best.x + transverse_kick(best.x[problem.loop_vertices], best.x, rng)
+        kick = smooth_kick(best.x[problem.loop_vertices], best.x, rng, axis)
         left = max_iterations - spent
-        again = _descend(problem, kicked, best.multipliers, load, left, observe)
+        here = problem
+        if best.triangles is not None:
+            here = problem.with_triangles(best.triangles)
+        again = _descend(here, best.x + kick, best.multipliers, load, left, observe)
         spent += again.iterations
         confirmed = again.converged and (
             abs(again.energy - best.energy) <= _SAME_ENERGY * abs(best.energy)
@@ -80,24 +100,39 @@ def solve(
         best = again if again.energy < best.energy or not again.converged else best
     if best.converged and not confirmed:
         best = replace(best, status=Status.SADDLE)
-    return replace(best, iterations=spent, seconds=time.perf_counter() - started)
+    best = _with_mesh(problem, start, best)
+    seconds = time.perf_counter() - started
+    return problem.judged(replace(best, iterations=spent, seconds=seconds))
 
 
-def transverse_kick(
-    x_loop: FloatArray, x: FloatArray, rng: np.random.Generator
+def smooth_kick(
+    x_loop: FloatArray, x: FloatArray, rng: np.random.Generator, axis: int
 ) -> FloatArray:
-    """Return a smooth random displacement (n_v, 3) of 1e-3 L across the loop's mean plane.
+    """Return a smooth random displacement (n_v, 3) of 1e-3 L along an axis of the loop.
 
-    A random polynomial of degree 2 to 4 in the in-plane coordinates (lower degrees are
-    rigid motions): noise from vertex to vertex would be smoothed away by the bending
-    stiffness before it reached the modes that become unstable.
+    Axis 2 is across its mean plane, 0 and 1 are its long and short one. A random polynomial
+    of degree 2 to 4 in the in-plane coordinates (across the plane lower degrees are rigid
+    motions): noise from vertex to vertex would be smoothed away by the bending stiffness
+    before it reached the modes that become unstable.
     """
     centre = x_loop.mean(axis=0)
     axes = np.linalg.svd(x_loop - centre)[2]
     a, b = ((x - centre) @ axes[:2].T / np.abs(x_loop - centre).max()).T
     powers = [(i, d - i) for d in (2, 3, 4) for i in range(d + 1)]
     height = sum(rng.standard_normal() * a**i * b**j for i, j in powers)
-    return np.outer(height * (_KICK_SIZE / np.abs(height).max()), axes[2])
+    return np.outer(height * (_KICK_SIZE / np.abs(height).max()), axes[axis])
+
+
+def _with_mesh(problem: Problem, start: FloatArray, found: Equilibrium) -> Equilibrium:
+    """Return a result with what became of a soap film's mesh; `start` is (n_v, 3)."""
+    film = problem.film
+    if isinstance(film, PlaneFilm) and np.isfinite(found.x).all():
+        soap, x = carried(film.soap, start, found.x[problem.loop_vertices])
+        changed = None if soap is film.soap else soap.triangles
+        return replace(found, x=x, triangles=changed)
+    if isinstance(film, AreaFilm) and found.triangles is film.triangles:
+        return replace(found, triangles=None)
+    return found
 
 
 def _descend(
@@ -109,12 +144,22 @@ def _descend(
     observe: Callable[[FloatArray], None],
 ) -> Equilibrium:
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
-    # The stretching stiffness whose stiffest mode is as stiff as the loop's in bending:
-    # 4 mu / s = 16 / s^3. Softer lets lengths drift, stiffer slows the iteration down.
-    penalty = 4.0 / float(np.mean(problem.loop.rest_lengths)) ** 2
-    iterate = _Iterate(x, multipliers, _FIRST_TOLERANCE, 0)
+    penalty, stretched = _first_penalty(problem, load), np.inf
+    iterate, at_rest = _Iterate(x, multipliers, _FIRST_TOLERANCE, 0), True
     while True:
+        try:
+            x = (
+                iterate.x
+                if at_rest
+                else problem.condensed.extend(iterate.x[problem.loop_vertices])
+            )
+            problem, x = centred(problem, x)
+        except LinAlgError:  # no film
+            return _record(problem, iterate, load, Status.STALLED)
+        iterate, at_rest = replace(iterate, x=x), True
         forces, tension, scale = _forces(problem, iterate, load, penalty)
+        if scale == 0.0:  # not even bending: a point
+            return _record(problem, iterate, load, Status.STALLED)
         residual = float(np.abs(forces).max()) / scale
         if not np.isfinite(residual):
             return _record(problem, iterate, load, Status.NOT_FINITE)
@@ -124,10 +169,15 @@ def _descend(
                 multipliers=tension,
                 tolerance=max(_TIGHTENING * iterate.tolerance, _FINAL_TOLERANCE),
             )
-            if residual <= RESIDUAL_TOLERANCE and (
-                problem.length_error(iterate.x) <= LENGTH_TOLERANCE
-            ):
-                return _record(problem, iterate, load, Status.CONVERGED)
+            before, stretched = stretched, problem.length_error(iterate.x)
+            if residual <= RESIDUAL_TOLERANCE and stretched <= LENGTH_TOLERANCE:
+                at_rest = _film_at_rest(problem, iterate.x)
+                if at_rest:
+                    return _record(problem, iterate, load, Status.CONVERGED)
+                continue
+            # Multipliers that chase a loop to and fro get nowhere: hold it faster.
+            if stretched > max(_STRETCHED, 0.5 * before):
+                penalty *= 4
             forces, tension, scale = _forces(problem, iterate, load, penalty)
         if iterate.iterations >= budget:
             return _record(problem, iterate, load, Status.ITERATION_LIMIT)
@@ -140,6 +190,27 @@ def _descend(
         observe(iterate.x[problem.loop_vertices])
 
 
+def _first_penalty(problem: Problem, load: float) -> float:
+    """Return the stretching stiffness mu, alpha / L^2.
+
+    Its stiffest mode is as stiff as the loop's in bending, 4 mu / s = 16 / s^3: softer lets
+    lengths drift, stiffer slows the iteration down. But film and bending are to be weak
+    against it, load and 4 pi^2 against mu / 8: else they would draw the loop to a point.
+    """
+    even = 4.0 / float(np.mean(problem.loop.rest_lengths)) ** 2
+    return max(even, 10.0 * load, _STIFFER_THAN_BENDING)
+
+
+def _film_at_rest(problem: Problem, x: FloatArray) -> bool:
+    """Whether the film balances by its own measure, however little it pulls.
+
+    The residual does not feel a film a million times softer than the loop.
+    """
+    film = np.abs(problem.film_forces(x, 1.0))
+    inside = film[problem.interior].max(initial=0.0)
+    return bool(inside <= _FILM_BALANCE * film.max())
+
+
 def _forces(
     problem: Problem, iterate: _Iterate, load: float, penalty: float
 ) -> tuple[FloatArray, FloatArray, float]:
@@ -149,7 +220,7 @@ def _forces(
     tension = iterate.multipliers + penalty * excess / problem.loop.rest_lengths
     parts = (
         problem.bending_energy(x)[1],
-        problem.film_energy(x, load)[1],
+        problem.film_forces(x, load),
         problem.tension_force(x, tension),
     )
     scale = max(float(np.abs(part).max()) for part in parts)
@@ -171,17 +242,19 @@ def _minimise(
     the loop's stiffest bending mode, 32 / s^3, has stiffness 1 that step is a good one; in
     units of L it overshoots so far that the line search gives up.
     """
-    weights = load * problem.film.weights
-    shape = iterate.x.shape
+    space = trial_space(problem, iterate.x, load)
+    springs, weights = space.springs
+    base = space.lift(forces)
     unit = float(np.sqrt(problem.loop.rest_lengths.min() ** 3 / 32))
 
     def difference(scaled: FloatArray) -> tuple[float, FloatArray]:
-        gradient = np.empty(shape)
+        moved = space.displacement(unit * scaled)
+        gradient = np.empty_like(base)
         value = kernels.augmented_difference(
-            unit * scaled.reshape(shape),
+            moved,
             iterate.x,
-            forces,
-            problem.film.edges,
+            base,
+            springs,
             weights,
             problem.loop_vertices,
             problem.loop.rest_lengths,
@@ -189,23 +262,33 @@ def _minimise(
             penalty,
             gradient,
         )
-        return value, unit * gradient.ravel()
+        value += space.beyond_linear(moved, gradient)
+        return value, unit * space.collect(gradient)
+
+    reached = np.zeros(space.size)
+
+    def keep(scaled: FloatArray) -> None:
+        if not space.holds(space.displacement(unit * scaled)):
+            raise StopIteration
+        reached[:] = scaled
 
     found = minimize(
         difference,
-        np.zeros(iterate.x.size),
+        np.zeros(space.size),
         jac=True,
         method="CG",
+        callback=keep,
         options={
-            "gtol": unit * iterate.tolerance * scale,
+            # A little less: else rounding might find nothing to do here, and no end there.
+            "gtol": 0.99 * unit * iterate.tolerance * scale,
             "maxiter": _ITERATIONS_PER_BASE,
         },
     )
-    if found.nit == 0 and not found.success:
+    if not reached.any() and not found.success:
         return None
     return replace(
         iterate,
-        x=iterate.x + unit * found.x.reshape(shape),
+        x=iterate.x + space.displacement(unit * reached),
         iterations=iterate.iterations + int(found.nit),
     )
 
@@ -213,7 +296,9 @@ def _minimise(
 def _record(
     problem: Problem, iterate: _Iterate, load: float, status: Status
 ) -> Equilibrium:
+    film = problem.film
     return replace(
         problem.equilibrium(iterate.x, iterate.multipliers, load, status),
         iterations=iterate.iterations,
+        triangles=film.triangles if isinstance(film, AreaFilm) else None,
     )

@@ -15,10 +15,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
+from eulerplateau.condensed import loop_energy
 from eulerplateau.inextensible import project_lengths
 from eulerplateau.mesh import FloatArray
-from eulerplateau.newton import loop_energy
 from eulerplateau.problem import Problem
 from eulerplateau.solution import RESIDUAL_TOLERANCE
 from eulerplateau.stability import Stability, stability
@@ -65,8 +66,12 @@ class Direction:
 
 @dataclass(frozen=True)
 class BranchPoint:
-    """An equilibrium on a branch, the branch's direction there, and its stability."""
+    """An equilibrium on a branch, the branch's direction there, and its stability.
 
+    `problem` is the one it solves: a soap film's is made anew where the film has turned.
+    """
+
+    problem: Problem
     model: TangentModel
     load: float
     direction: Direction
@@ -83,6 +88,15 @@ class BranchPoint:
         """Spectrum of the second variation."""
         return stability(self.model)
 
+    @property
+    def film(self) -> FloatArray:
+        """The film (n_v, 3) on the loop."""
+        return self.problem.condensed.extend(self.x)
+
+    def displacement(self, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a displacement of the loop (n_b, 3)."""
+        return self.problem.condensed.displacement(self.x, moved)
+
 
 def first_point(
     problem: Problem, x_loop: FloatArray, load: float, settings: Settings
@@ -91,11 +105,10 @@ def first_point(
     model = tangent_model(loop_energy(problem, load), x_loop)
     upwards = Direction(np.zeros_like(x_loop), settings.load_unit)
     direction = branch_direction(problem, model, upwards, settings)
-    return BranchPoint(model, load, direction, 0.0, 0)
+    return BranchPoint(problem, model, load, direction, 0.0, 0)
 
 
 def follow(
-    problem: Problem,
     start: BranchPoint,
     settings: Settings,
     stop: Callable[[BranchPoint], bool] = lambda point: False,
@@ -109,7 +122,7 @@ def follow(
     for _ in range(settings.max_points):
         after = None
         while after is None:
-            after = advance(problem, point, step, settings)
+            after = advance(point, step, settings)
             if after is None:
                 step *= 0.5
                 if step < settings.smallest_step:
@@ -117,17 +130,16 @@ def follow(
         yield after
         if stop(after) or not low <= after.load <= high:
             return
-        point = after
+        point = recentred(after, settings)
         if after.corrections <= _EASY:
             step = min(1.5 * step, settings.largest_step)
 
 
-def advance(
-    problem: Problem, point: BranchPoint, step: float, settings: Settings
-) -> BranchPoint | None:
+def advance(point: BranchPoint, step: float, settings: Settings) -> BranchPoint | None:
     """Return the branch point at arclength `step` from `point`; None if not corrected."""
     guess = point.x + step * point.direction.displacement
     load = point.load + step * point.direction.load
+    problem = point.problem
     after = correct(problem, guess, load, point.direction, settings)
     if after is None:
         return None
@@ -136,12 +148,19 @@ def advance(
     return None if ahead < _STRAIGHT else replace(after, arclength=point.arclength + step)
 
 
-def along(
-    problem: Problem, point: BranchPoint, other: BranchPoint, settings: Settings
-) -> float:
+def recentred(point: BranchPoint, settings: Settings) -> BranchPoint:
+    """Return the point in a problem made anew at its film, if the film has turned."""
+    if loop_energy(point.problem, point.load).holds(point.x):
+        return point
+    there = point.problem.near(point.film)
+    found = correct(there, point.x, point.load, point.direction, settings)
+    return point if found is None else replace(found, arclength=point.arclength)
+
+
+def along(point: BranchPoint, other: BranchPoint, settings: Settings) -> float:
     """Return how far `other` lies from `point` along the branch's direction there."""
     way = Direction(other.x - point.x, other.load - point.load)
-    return _inner(problem, point.direction, way, settings)
+    return _inner(point.problem, point.direction, way, settings)
 
 
 def _inner(problem: Problem, a: Direction, b: Direction, settings: Settings) -> float:
@@ -188,7 +207,10 @@ def _correct(
     for corrections in range(_CORRECTIONS):
         if x is None or load <= 0 or not np.isfinite(load):
             return None
-        model = tangent_model(loop_energy(problem, load), x)
+        try:
+            model = tangent_model(loop_energy(problem, load), x)
+        except LinAlgError:  # no film on this loop
+            return None
         normal = _coefficients(model, direction.displacement)
         way = Direction(x - guess, load - guess_load)
         off = _inner(problem, direction, way, settings)
@@ -196,13 +218,13 @@ def _correct(
         stuck = model.residual < RESIDUAL_TOLERANCE**1.5 and model.residual > 0.5 * best
         if settled or stuck:
             tangent = branch_direction(problem, model, direction, settings)
-            return BranchPoint(model, load, tangent, 0.0, corrections)
+            return BranchPoint(problem, model, load, tangent, 0.0, corrections)
         best = min(best, model.residual)
         system = _bordered(problem, model, normal, direction.load, settings)
         rhs = -np.append(model.gradient, off)
         try:
             shift = _solve(system, rhs, smallest)
-        except np.linalg.LinAlgError:
+        except LinAlgError:
             return None
         x = project_lengths(problem.loop, x + model.displacement(shift[:-1]))
         load = load + float(shift[-1])
@@ -240,7 +262,7 @@ def make_direction(
 
 def load_derivative(problem: Problem, model: TangentModel) -> FloatArray:
     """Return b = dg/dl (2 n_b - 6,), the film's force per unit of load on tangent space."""
-    force = 2 * problem.condensed.stiffness @ model.x
+    force = problem.condensed.force(model.x)
     derivative: FloatArray = model.basis.T @ (force.ravel() / model.scale)
     return derivative
 

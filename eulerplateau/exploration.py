@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from itertools import count
 
 from eulerplateau.continuation import BranchPoint, Settings, follow
-from eulerplateau.problem import Problem
 from eulerplateau.special_points import SpecialPoint, branches_from, special_points
 from eulerplateau.symmetry import loop_distance
 
@@ -63,9 +62,7 @@ class _Lead:
     origin: int | None = field(compare=False)
 
 
-def explore(
-    problem: Problem, start: BranchPoint, settings: Settings, limits: Limits
-) -> Iterator[Visit]:
+def explore(start: BranchPoint, settings: Settings, limits: Limits) -> Iterator[Visit]:
     """Yield the points of the branch through `start`, then of those that leave it."""
     order = count()
     leads = [_Lead(0, next(order), start, None)]
@@ -74,19 +71,18 @@ def explore(
         if not leads:
             return
         lead = heapq.heappop(leads)
-        for visit in _trace(problem, lead, branch, settings, limits, found):
+        for visit in _trace(lead, branch, settings, limits, found):
             yield visit
             special = visit.special
             if special is None or visit.known or len(found) > limits.special_points:
                 continue
-            for first in branches_from(problem, special, settings):
+            for first in branches_from(special, settings):
                 heapq.heappush(
                     leads, _Lead(special.n_unstable, next(order), first, visit.number)
                 )
 
 
 def _trace(
-    problem: Problem,
     lead: _Lead,
     branch: int,
     settings: Settings,
@@ -96,8 +92,8 @@ def _trace(
     """Yield one branch; special points not met before are added to `found`."""
     yield Visit(branch, lead.origin, lead.start)
     before = lead.start
-    for after in follow(problem, lead.start, settings, limits.stop):
-        for special in special_points(problem, before, after, settings):
+    for after in follow(lead.start, settings, limits.stop):
+        for special in special_points(before, after, settings):
             number = _number(special, found)
             known = number < len(found)
             if not known:

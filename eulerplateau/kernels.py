@@ -1,16 +1,20 @@
 """Compiled loops: energies and gradients of film and loop. Arrays in, arrays out.
 
-Every energy here is quadratic or, for the lengths, quartic in the positions, so the same
-kernels give exact *differences* from a base point: Q(x0 + u) - Q(x0) = grad Q(x0).u + Q(u).
+Every energy but the area is quadratic or, for the lengths, quartic in the positions, so the
+same kernels give exact *differences* from a base point: Q(x0 + u) - Q(x0) = grad Q(x0).u +
+Q(u).
 Numba does not notice when a helper in another module changes (numba #1833): kernels that
 call each other stay in this file.
 """
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 from eulerplateau.mesh import FloatArray, IntArray
+
+Vector = tuple[float, float, float]
 
 
 @njit(cache=True)
@@ -103,4 +107,69 @@ def augmented_difference(
             force = (tension[v] * step + pull * (chord + step)) / s
             gradient[j, d] += force
             gradient[i, d] -= force
+    return value
+
+
+@njit(cache=True)
+def _side(x: FloatArray, i: int, j: int) -> Vector:
+    return x[j, 0] - x[i, 0], x[j, 1] - x[i, 1], x[j, 2] - x[i, 2]
+
+
+@njit(cache=True)
+def _sum(a: Vector, factor: float, b: Vector) -> Vector:
+    return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]
+
+
+@njit(cache=True)
+def _dot(a: Vector, b: Vector) -> float:
+    product: float = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return product
+
+
+@njit(cache=True)
+def _cross(a: Vector, b: Vector) -> Vector:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+@njit(cache=True)
+def area_beyond_linear(
+    u: FloatArray, base: FloatArray, triangles: IntArray, gradient: FloatArray
+) -> float:
+    """Return A(base + u) - A(base) - grad A . u; add the gradient of that to `gradient`.
+
+    A is the area of the triangles. With c and c + d twice the vector area of one, d = d1 +
+    d2 linear and quadratic in u, S = |c + d| + |c| and g = |c + d| - |c| = d.(2 c + d) / S,
+
+        2 (A(u) - A(0) - grad A . u) = (2 c . d2 + |d|^2 - g c . d1 / |c|) / S,
+
+    every term of second order: nothing cancels, however small u is. A triangle without an
+    area is left out. u, base, gradient : (n_v, 3); triangles : (n_t, 3).
+    """
+    value = 0.0
+    for t in range(triangles.shape[0]):
+        i, j, k = triangles[t]
+        p, q, v, w = _side(base, i, j), _side(base, i, k), _side(u, i, j), _side(u, i, k)
+        c, second = _cross(p, q), _cross(v, w)
+        first = _sum(_cross(v, q), 1.0, _cross(p, w))
+        d = _sum(first, 1.0, second)
+        moved = _sum(c, 1.0, d)
+        size, after = np.sqrt(_dot(c, c)), np.sqrt(_dot(moved, moved))
+        if size == 0.0 or after == 0.0:
+            continue
+        total = size + after
+        gain = (2.0 * _dot(c, d) + _dot(d, d)) / total
+        linear = _dot(c, first) / size
+        value += 0.5 * (2.0 * _dot(c, second) + _dot(d, d) - gain * linear) / total
+        # With n = c / |c| grad_j A = (x_k - x_i) x n / 2; n turns by (d - g n) / |c + d|.
+        turn = _sum(d, -gain / size, c)
+        at_j = _sum(_cross(w, c), size / after, _cross(_sum(q, 1.0, w), turn))
+        at_k = _sum(_cross(c, v), size / after, _cross(turn, _sum(p, 1.0, v)))
+        for axis in range(3):
+            gradient[j, axis] += 0.5 * at_j[axis] / size
+            gradient[k, axis] += 0.5 * at_k[axis] / size
+            gradient[i, axis] -= 0.5 * (at_j[axis] + at_k[axis]) / size
     return value

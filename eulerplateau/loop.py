@@ -9,6 +9,9 @@ import numpy as np
 
 from eulerplateau.mesh import FloatArray
 
+# Edges in which a resolved loop can turn back on itself.
+_TURNING_BACK = 6
+
 
 @dataclass(frozen=True)
 class Loop:
@@ -49,6 +52,30 @@ class Loop:
         """Return max |l_v / s_v - 1|."""
         lengths = np.linalg.norm(self.chords(x_loop), axis=1)
         return float(np.abs(lengths / self.rest_lengths - 1).max())
+
+    def largest_turning(self, x_loop: FloatArray) -> float:
+        """Return the largest angle between consecutive edges, degrees, in [0, 180]."""
+        after = self.chords(x_loop)
+        before = np.roll(after, 1, axis=0)
+        sine = np.linalg.norm(np.cross(before, after), axis=1)
+        cosine = (before * after).sum(axis=1)
+        return float(np.degrees(np.arctan2(sine, cosine).max()))
+
+    def strands_meet(self, x_loop: FloatArray) -> bool:
+        """Whether two stretches of the loop have come as close as neighbours are.
+
+        Where it turns by no more than 30 degrees at a vertex, a loop takes six edges to
+        turn back, four edges away from itself.
+        """
+        n = len(x_loop)
+        if n < 4 * _TURNING_BACK:
+            return False
+        from scipy.spatial.distance import cdist
+
+        number = np.arange(n)
+        between = np.abs(number - number[:, None])
+        apart = np.minimum(between, n - between) >= _TURNING_BACK
+        return bool(cdist(x_loop, x_loop)[apart].min() < self.rest_lengths.max())
 
     def bending_force(self, x_loop: FloatArray) -> FloatArray:
         """Return the gradient (n_b, 3) of sum_v <s_v> kappa_v^2, i.e. 2 B x.

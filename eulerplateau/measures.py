@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.distance import pdist
 
+from eulerplateau.area_film import smallest_angle
 from eulerplateau.curvature import (
     area_vectors,
     loop_frame,
@@ -14,10 +15,14 @@ from eulerplateau.curvature import (
     unit,
 )
 from eulerplateau.intersections import self_intersections
+from eulerplateau.loop import Loop
 from eulerplateau.mesh import DiskMesh, FloatArray, IntArray
 
-# Lengths, in units of L, that count as zero when the rest polygon is cut by a line.
-_ON_LINE = 1e-9
+# Lengths, in units of L, that count as zero when the rest polygon is cut by a line: above
+# the rounding of meshes in single precision, or far from the origin.
+_ON_LINE = 1e-6
+# Twists (degrees) that are one and the same.
+_SAME_TWIST = 1e-6
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,8 @@ class Measures:
         See `intersections.self_intersections`.
     aspect : float
         See `aspect`.
+    min_angle : float
+        The smallest angle of the film's triangles, degrees.
     """
 
     abs_kappa_n: float
@@ -49,22 +56,27 @@ class Measures:
     waist_twist: float
     self_intersections: int
     aspect: float
+    min_angle: float
 
 
 @dataclass(frozen=True)
 class WaistPath:
-    """The straight line between the two loop vertices farthest apart in the rest mesh.
+    """The straight lines between the loop vertices farthest apart in the rest mesh.
 
-    The line crosses n triangles. Attributes:
+    Each pair of vertices has two, one for each way; on the rim of the polygon one. The
+    lines cross n triangles in all. Attributes:
 
     corners : (n, 3) int
-        Vertices of the triangles, in the order in which the line crosses them.
+        Vertices of the triangles, line after line, in the order in which it crosses them.
     weights : (n, 2, 3) float
         Barycentric coordinates of the points where it enters and leaves each of them.
+    first : (m,) int
+        Where each line begins.
     """
 
     corners: IntArray
     weights: FloatArray
+    first: IntArray
 
 
 def measure(mesh: DiskMesh, x: FloatArray, path: WaistPath | None) -> Measures:
@@ -75,15 +87,17 @@ def measure(mesh: DiskMesh, x: FloatArray, path: WaistPath | None) -> Measures:
     """
     crossings = self_intersections(x, mesh.triangles)
     frame = loop_frame(mesh, x)
-    sines = np.minimum(0.5 * frame.kappa * frame.mean_lengths, 1.0)
+    corner = x[mesh.triangles]
+    areas = np.linalg.norm(area_vectors(mesh.triangles, x), axis=1)
     return Measures(
         abs_kappa_n=float(np.abs(frame.kappa_n) @ frame.mean_lengths),
         total_gauss_curvature=total_gauss_curvature(mesh, x),
-        area=float(np.linalg.norm(area_vectors(mesh.triangles, x), axis=1).sum()),
-        max_turning=float(np.degrees(2.0 * np.arcsin(sines.max()))),
+        area=float(areas.sum()),
+        max_turning=Loop(mesh.rest_lengths).largest_turning(x[mesh.loop]),
         waist_twist=waist_twist(path, x),
         self_intersections=crossings,
         aspect=aspect(mesh, x),
+        min_angle=smallest_angle(corner - np.roll(corner, 1, axis=1), areas),
     )
 
 
@@ -93,10 +107,13 @@ def aspect(mesh: DiskMesh, x: FloatArray) -> float:
     That is the square root of the ratio of the two largest second moments of the film's
     area about its centroid. It is b/a for an ellipse and for every polygon that is the
     affine image of a regular one, however its boundary is sampled, and 1 for a regular
-    polygon, whose extents would depend on the choice among equivalent axes.
+    polygon, whose extents would depend on the choice among equivalent axes; NaN for a
+    film without area.
     """
     corner = x[mesh.triangles]
     areas = np.linalg.norm(area_vectors(mesh.triangles, x), axis=1)
+    if areas.sum() == 0.0:
+        return float("nan")
     centre = areas @ corner.mean(axis=1) / areas.sum()
     corner = corner - centre
     # A quadratic form integrates over a triangle exactly by the midpoints of its edges.
@@ -115,6 +132,11 @@ def waist_twist(path: WaistPath | None, x: FloatArray) -> float:
     summed. Positive when the film winds as a right-handed screw, whichever way the path
     runs and whichever side of the film is up; a mirror image has the opposite twist. The
     surface of eq. eight has 4 arctan(t). Full turns count. NaN without a path.
+
+    Of several lines, the one whose twist is largest in size is taken, so that no numbering
+    of the mesh decides; of two alike and opposite, as in a film that is its own mirror
+    image, the positive one. Where a film lies flat on itself it turns neither way: that
+    counts as +180.
     """
     if path is None:
         return float("nan")
@@ -129,24 +151,43 @@ def waist_twist(path: WaistPath | None, x: FloatArray) -> float:
     carried = before - (fall / bend)[:, None] * turn
     sine = (along[1:] * np.cross(carried, after)).sum(axis=1)
     cosine = (carried * after).sum(axis=1)
-    return float(np.degrees(np.arctan2(sine, cosine).sum()))
+    turns = np.append(np.degrees(np.arctan2(sine, cosine)), 0.0)
+    turns[turns <= -180.0 + _SAME_TWIST] += 360.0  # flat on itself: rounding chose the way
+    turns[path.first[1:] - 1] = 0.0  # from the end of a line to the next one's beginning
+    twists = np.add.reduceat(turns, path.first)
+    lowest, highest = float(twists.min()), float(twists.max())
+    return highest if highest >= -lowest - _SAME_TWIST else lowest
 
 
 def waist_path(mesh: DiskMesh) -> WaistPath | None:
     """Return the path for `waist_twist`, or None if the rest mesh has none.
 
-    It has none if it is not planar, or if the line does not run inside the polygon. Where
-    the line runs along an edge the triangle on its right is taken. Where several pairs of
-    loop vertices are equally far apart, as in a regular hexagon, the first in the order of
-    `mesh.loop` is taken: the twist is then that of one axis among equivalent ones.
+    It has none if it is not planar, or if a line leaves the polygon. Where a
+    line runs along an edge the triangle on its right is taken. Where several pairs of loop
+    vertices are equally far apart, as in a regular hexagon, each has its lines.
     """
-    start, end = _farthest_pair(mesh)
     up = unit(area_vectors(mesh.triangles, mesh.x).sum(axis=0))
+    if float(np.ptp(mesh.x @ up)) > _ON_LINE:
+        return None
+    found: list[tuple[IntArray, FloatArray]] = []
+    for start, end in _farthest_pairs(mesh):
+        both = (_line(mesh, up, start, end), _line(mesh, up, end, start))
+        inside = [line for line in both if line is not None]
+        if not inside:
+            return None
+        found += inside
+    corners, weights = zip(*found, strict=True)
+    first = np.cumsum([0, *(len(line) for line in corners[:-1])])
+    return WaistPath(np.concatenate(corners), np.concatenate(weights), first)
+
+
+def _line(
+    mesh: DiskMesh, up: FloatArray, start: int, end: int
+) -> tuple[IntArray, FloatArray] | None:
+    """Return what a line crosses, as in WaistPath; None if it leaves the polygon."""
     offset = mesh.x - mesh.x[start]
     along = unit(offset[end])
     span = float(np.linalg.norm(offset[end]))
-    if float(np.abs(offset @ up).max()) > _ON_LINE:
-        return None
     side = offset @ np.cross(up, along)
     # Vertices on the line are counted to its left, so that no case is special.
     side[np.abs(side) < _ON_LINE] = 0.0
@@ -164,15 +205,15 @@ def waist_path(mesh: DiskMesh) -> WaistPath | None:
     wanted = np.concatenate([stops[:, 0], [span]])
     if not np.allclose(reached, wanted, rtol=0.0, atol=10.0 * _ON_LINE):
         return None
-    return WaistPath(corners[order], weights[order])
+    return corners[order], weights[order]
 
 
-def _farthest_pair(mesh: DiskMesh) -> tuple[int, int]:
-    """Return the two loop vertices farthest apart, the first pair among equals."""
+def _farthest_pairs(mesh: DiskMesh) -> list[tuple[int, int]]:
+    """Return the pairs of loop vertices farthest apart, all among equals."""
     distances = pdist(mesh.x[mesh.loop])
-    first = int(np.flatnonzero(distances >= distances.max() - _ON_LINE)[0])
-    rows, columns = np.triu_indices(mesh.n_b, 1)
-    return int(mesh.loop[rows[first]]), int(mesh.loop[columns[first]])
+    equals = distances >= distances.max() - _ON_LINE
+    rows, columns = (mesh.loop[ends[equals]] for ends in np.triu_indices(mesh.n_b, 1))
+    return list(zip(rows.tolist(), columns.tolist(), strict=True))
 
 
 def _crossed(triangles: IntArray, right: np.ndarray) -> IntArray:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+import logging
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, diags_array
 from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import splu
 
 from eulerplateau.errors import MeshError
 
@@ -19,6 +21,16 @@ IntArray = NDArray[np.int64]
 # Below this ratio of twice the area to the longest edge squared, rounding alone decides
 # the triangle's orientation. Slivers of aspect ratio 1e8 are still well above it.
 _ZERO_AREA = 1e-14
+
+# Shorter loop edges, in units of L: rounding of their ends alone turns them so much that
+# of the forces, and so of the shape and its stability, few digits would be left.
+_SHORTEST_EDGE = 1e-5
+
+# Farther from the origin than this many times its own size, a mesh has lost digits that its
+# energies would show: an offset of D sizes costs up to 100 eps D, here 1e-11.
+_FAR = 1e-11 / (100 * float(np.finfo(np.float64).eps))
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -49,7 +61,8 @@ class DiskMesh:
     def from_triangles(cls, points: ArrayLike, triangles: ArrayLike) -> DiskMesh:
         """Check `points` (n_v, 3), in any unit, and `triangles` (n_t, 3); scale to L = 1.
 
-        Raises MeshError naming the first vertex, edge or triangle that is wrong.
+        Logs a warning if the mesh lies so far from the origin that digits are lost. Raises
+        MeshError naming the first vertex, edge or triangle that is wrong.
         """
         given: FloatArray = np.asarray(points, dtype=np.float64)
         corners: IntArray = np.array(triangles, dtype=np.int64)
@@ -58,13 +71,37 @@ class DiskMesh:
         # A power of two takes squares out of reach of overflow, and rounds nothing.
         exponent = int(np.frexp(np.abs(given).max())[1])
         scaled = np.ldexp(given, -exponent)
-        centred = scaled - scaled[loop].mean(axis=0)
+        centre = scaled[loop].mean(axis=0)
+        centred = scaled - centre
         _check_geometry(centred, corners)
+        _warn_if_far(centre, centred)
         chords = centred[np.roll(loop, -1)] - centred[loop]
         lengths = np.linalg.norm(chords, axis=1)
         total = float(lengths.sum())
+        short = lengths < _SHORTEST_EDGE * total
+        ends = np.stack([loop, np.roll(loop, -1)], axis=1)
+        problem = f"is shorter than {_SHORTEST_EDGE:g} of the loop: merge its two vertices"
+        _refuse_edge(ends, short, problem)
         length = float(np.ldexp(total, exponent))
         return cls(centred / total, corners, loop, lengths / total, length)
+
+    def with_triangles(self, triangles: IntArray) -> DiskMesh:
+        """Return the mesh with other triangles (n_t, 3) on the same vertices and loop.
+
+        Inside, vertices rest where each is the mean of its neighbours (Tutte 1963), which
+        leaves no triangle turned over if the loop is convex.
+        """
+        start, end = np.unique(directed_edges(triangles), axis=0).T
+        between = coo_array((np.ones(len(start)), (start, end)), shape=(self.n_v,) * 2)
+        joined = (between + between.T).tocsr()
+        joined.data[:] = 1.0
+        degree = diags_array(joined.sum(axis=1))
+        rows = (degree - joined).tocsr()[self.interior]
+        x = self.x.copy()
+        if len(self.interior):
+            pull = rows[:, self.loop] @ x[self.loop]
+            x[self.interior] = -splu(rows[:, self.interior].tocsc()).solve(pull)
+        return replace(self, x=x, triangles=triangles)
 
     @property
     def n_v(self) -> int:
@@ -179,6 +216,19 @@ def _check_geometry(points: FloatArray, triangles: IntArray) -> None:
     longest = lengths.reshape(-1, 3).max(axis=1)[:, None]
     doubled = np.linalg.norm(np.cross((b - a) / longest, (c - a) / longest), axis=1)
     _refuse("triangle", doubled <= _ZERO_AREA, "has no area")
+
+
+def _warn_if_far(centre: FloatArray, centred: FloatArray) -> None:
+    size = float(np.linalg.norm(np.ptp(centred, axis=0)))
+    away = float(np.linalg.norm(centre)) / size
+    if away > _FAR:
+        loss = 100 * float(np.finfo(np.float64).eps) * away
+        _log.warning(
+            "the mesh lies %.2g times its size from the origin: expect relative errors "
+            "of up to %.1g, and move it to the origin where it is made",
+            away,
+            loss,
+        )
 
 
 def _refuse(kind: str, mask: ArrayLike, problem: str) -> None:

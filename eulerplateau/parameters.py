@@ -70,6 +70,10 @@ def validate(data: Mapping[str, Any], model: type[Model], source: str) -> Model:
         return model.model_validate_json(json.dumps(data, default=str))
     except ValidationError as error:
         raise _spec_error(error.errors(include_url=False), data, model, source) from None
+    except SpecError as error:
+        # From a validator that knows which of two sections to blame.
+        key, problem = error.args
+        raise SpecError(key, f"{problem} (in {source})") from None
 
 
 def _spec_error(

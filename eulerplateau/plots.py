@@ -12,7 +12,6 @@ from eulerplateau.output.child import draw_in_child
 from eulerplateau.output.figure import (
     ABS_KAPPA_N,
     BLUE,
-    LOAD,
     ORANGE,
     VERMILION,
     enlarged,
@@ -20,8 +19,9 @@ from eulerplateau.output.figure import (
     new_figure,
     save,
 )
+from eulerplateau.output.reading import read_table
 from eulerplateau.output.states import is_planar, legs
-from eulerplateau.output.table import Row, read_rows
+from eulerplateau.output.table import Row
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +59,7 @@ def plot_diagram(rows: Sequence[Row], path: Path) -> None:
     for column in axes.T:
         for ax, (_, quantity) in zip(column, _PANELS, strict=True):
             _draw(ax, rows, quantity, bands)
-        column[-1].set_xlabel(LOAD)
+        column[-1].set_xlabel(rows[0].load_name.label if rows else "load")
     for ax, (label, _) in zip(axes[:, 0], _PANELS, strict=True):
         ax.set_ylabel(label)
     axes[2, 0].set_yticks([0, 90, 180])
@@ -86,7 +86,7 @@ def _draw(
         good = [row for row in leg if row.converged]
         name = "load rising" if rising else "load falling"
         ax.plot(
-            [row.kL3_alpha for row in good],
+            [row.load for row in good],
             [quantity(row) for row in good],
             marker="o" if rising else "v",
             markersize=3.6 if rising else 5.0,
@@ -100,7 +100,7 @@ def _draw(
     bad = [row for row in rows if not row.converged]
     if bad:
         ax.plot(
-            [row.kL3_alpha for row in bad],
+            [row.load for row in bad],
             [quantity(row) for row in bad],
             marker="s",
             markersize=5,
@@ -118,7 +118,7 @@ def _bands(rows: Sequence[Row]) -> list[tuple[float, float]]:
     bands = []
     for planar, alike in _planar_runs(leg):
         if not planar:
-            loads = [row.kL3_alpha for row in alike]
+            loads = [row.load for row in alike]
             bands.append((min(loads), max(loads)))
     return bands
 
@@ -134,10 +134,10 @@ def _window(
     if not bands:
         return None
     low, high = min(bands)
-    loads = [row.kL3_alpha for row in rows]
+    loads = [row.load for row in rows]
     return None if high == max(loads) else enlarged(low, high, loads)
 
 
 if __name__ == "__main__":
     _folder = Path(sys.argv[1])
-    plot_diagram(read_rows(_folder / "sweep.csv"), _folder / "diagram.png")
+    plot_diagram(read_table(_folder), _folder / "diagram.png")

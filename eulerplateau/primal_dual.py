@@ -29,7 +29,8 @@ import numpy as np
 
 from eulerplateau.loop import backward_differences, differences
 from eulerplateau.mesh import FloatArray
-from eulerplateau.tangent import TURNS, LoopEnergy, lagrangian_hessian
+from eulerplateau.motions import TURNS
+from eulerplateau.tangent import LoopEnergy, lagrangian_hessian
 
 # Deflation strength over the mean diagonal of H: between its soft and its stiff modes.
 _DEFLATION = 1e-3

@@ -6,17 +6,24 @@ to c_v(x) = (|e_v|^2 - s_v^2) / (2 s_v) = 0 for every loop edge.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from eulerplateau import kernels
+from eulerplateau.area_film import AreaFilm
+from eulerplateau.chart import THIN, Chart, chart_at
 from eulerplateau.condensation import Condensation, condense
 from eulerplateau.film import FILMS, Film
+from eulerplateau.harmonic import balance
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import DiskMesh, FloatArray, IntArray
-from eulerplateau.solution import Equilibrium, Status
+from eulerplateau.motions import sliding, without
+from eulerplateau.plane_film import PlaneFilm, plane_film
+from eulerplateau.repair import repaired
+from eulerplateau.solution import LARGEST_LOAD, RESOLVED_TURNING, Equilibrium, Status
 
 
 @dataclass(frozen=True)
@@ -28,12 +35,16 @@ class Problem:
     film, loop : the two energies
     loop_vertices : (n_b,) int, cyclic
     interior : (n_v - n_b,) int, all other vertices
+    centre : (n_v, 3) float
+        The shape near which a soap film is sought (chart.py); films of fixed weights need
+        none.
     """
 
-    film: Film
+    film: Film | AreaFilm | PlaneFilm
     loop: Loop
     loop_vertices: IntArray
     interior: IntArray
+    centre: FloatArray | None = None
 
     @property
     def n_v(self) -> int:
@@ -41,18 +52,57 @@ class Problem:
         return len(self.loop_vertices) + len(self.interior)
 
     @cached_property
-    def condensed(self) -> Condensation:
-        """The film with its interior eliminated; factorised on first use."""
+    def condensed(self) -> Condensation | Chart:
+        """The film with its interior eliminated; factorised on first use.
+
+        Not of a film kept in its plane, which has no use for an interior.
+        """
+        if isinstance(self.film, PlaneFilm):
+            raise TypeError("a film kept in its plane is not condensed")
+        if isinstance(self.film, AreaFilm):
+            return chart_at(
+                self.film, self.film.rest if self.centre is None else self.centre
+            )
         laplacian = self.film.laplacian(self.n_v)
         return condense(laplacian, self.loop_vertices, self.interior)
 
+    def near(self, x: FloatArray) -> Problem:
+        """Return the problem with its film sought near a shape (n_v, 3).
+
+        Thin triangles of a soap film are replaced by better ones: `centre` is then that
+        shape with other vertices inside.
+        """
+        film = self.film
+        if not isinstance(film, AreaFilm):
+            return self
+        if film.sides(x).smallest_angle < THIN:
+            film, x = repaired(film, x)
+        return replace(self, film=film, centre=x)
+
+    def at(self, x: FloatArray) -> Problem:
+        """Return the problem with its film sought near x (n_v, 3), its triangles kept."""
+        return replace(self, centre=x) if isinstance(self.film, AreaFilm) else self
+
+    def with_triangles(self, triangles: IntArray) -> Problem:
+        """Return the problem with a soap film's triangles (n_t, 3) replaced."""
+        film = self.film
+        if isinstance(film, PlaneFilm):
+            return replace(self, film=replace(film, soap=film.soap.retiled(triangles)))
+        assert isinstance(film, AreaFilm)
+        return replace(self, film=film.retiled(triangles))
+
     def film_energy(self, x: FloatArray, load: float) -> tuple[float, FloatArray]:
         """Return the film's energy and its gradient (n_v, 3) at x (n_v, 3)."""
-        gradient = np.zeros_like(x)
-        energy = kernels.film_energy_gradient(
-            x, self.film.edges, load * self.film.weights, gradient
-        )
-        return energy, gradient
+        return self.film.energy_gradient(x, load)
+
+    def film_forces(self, x: FloatArray, load: float) -> FloatArray:
+        """Return the film's forces (n_v, 3), which inside a film at rest vanish.
+
+        A soap film's are those that do work: see `harmonic.balance`.
+        """
+        if isinstance(self.film, AreaFilm):
+            return load * balance(self.film, x)
+        return self.film_energy(x, load)[1]
 
     def bending_energy(self, x: FloatArray) -> tuple[float, FloatArray]:
         """Return the loop's bending energy and its gradient (n_v, 3) at x (n_v, 3)."""
@@ -71,14 +121,23 @@ class Problem:
         return force
 
     def residual(self, x: FloatArray, multipliers: FloatArray, load: float) -> float:
-        """Return the imbalance of forces over the largest force, both as max norms."""
-        forces = (
-            self.bending_energy(x)[1],
-            self.film_energy(x, load)[1],
-            self.tension_force(x, multipliers),
-        )
+        """Return the imbalance of forces over the largest force, both as max norms.
+
+        What would slide a soap film's loop along itself does not count (motions.sliding).
+        Infinite where a soap film's triangles are so degenerate that they bear no film.
+        """
+        try:
+            film = self.film_forces(x, load)
+        except LinAlgError:
+            return np.inf
+        forces = self.bending_energy(x)[1], film, self.tension_force(x, multipliers)
         scale = max(float(np.abs(f).max()) for f in forces)
-        return float(np.abs(sum(forces)).max()) / scale if scale > 0 else 0.0
+        total = forces[0] + forces[1] + forces[2]
+        if not isinstance(self.film, Film):
+            on_loop = self.loop_vertices
+            slide = sliding(self.loop, x[on_loop])
+            total[on_loop] = without(slide, self.loop, total[on_loop])
+        return float(np.abs(total).max()) / scale if scale != 0 else 0.0
 
     def length_error(self, x: FloatArray) -> float:
         """Return max |l_v / s_v - 1| over the loop's edges."""
@@ -104,7 +163,46 @@ class Problem:
             status=status,
         )
 
+    def refused(self, x: FloatArray, load: float) -> Equilibrium | None:
+        """Return the record of a start (n_v, 3) no solver can work with, or None."""
+        if np.isfinite(x).all() and abs(load) <= LARGEST_LOAD:
+            return None
+        return Equilibrium(
+            x=x,
+            multipliers=np.zeros(len(self.loop_vertices)),
+            load=load,
+            energy=np.nan,
+            film_energy=np.nan,
+            bending_energy=np.nan,
+            residual=np.nan,
+            length_error=np.nan,
+            iterations=0,
+            seconds=0.0,
+            status=Status.NOT_FINITE,
+        )
 
-def make_problem(mesh: DiskMesh, film: str = "springs") -> Problem:
-    """Build the problem on a mesh; `film` is a key of FILMS."""
-    return Problem(FILMS[film](mesh), Loop(mesh.rest_lengths), mesh.loop, mesh.interior)
+    def judged(self, found: Equilibrium) -> Equilibrium:
+        """Return `found`; UNRESOLVED if it converged to a loop that its mesh cannot carry.
+
+        And PINCHED if a soap film has run out of width: between strands that meet no disk
+        is left to span, and what a solver makes of the mesh there means nothing. Every
+        solution passes here before anybody sees it, whatever method found it.
+        """
+        soap = not isinstance(self.film, Film) and found.status is not Status.NOT_FINITE
+        if soap and self.loop.strands_meet(found.x[self.loop_vertices]):
+            return replace(found, status=Status.PINCHED)
+        if not found.converged:
+            return found
+        turning = self.loop.largest_turning(found.x[self.loop_vertices])
+        resolved = turning <= RESOLVED_TURNING
+        return found if resolved else replace(found, status=Status.UNRESOLVED)
+
+
+def make_problem(mesh: DiskMesh, film: str = "springs", *, plane: bool = False) -> Problem:
+    """Build the problem on a mesh; `film` is a key of FILMS.
+
+    In its plane a soap film ("area") needs its loop only. Raises MeshError where there is
+    no plane to keep to.
+    """
+    made = plane_film(mesh) if plane else FILMS[film](mesh)
+    return Problem(made, Loop(mesh.rest_lengths), mesh.loop, mesh.interior)

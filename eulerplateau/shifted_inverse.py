@@ -33,7 +33,7 @@ from scipy.linalg.lapack import dsysv, dsytrf, dsytrs
 from eulerplateau.inextensible import LengthMetric, length_metric
 from eulerplateau.loop import Loop, backward_differences, differences
 from eulerplateau.mesh import FloatArray, IntArray
-from eulerplateau.tangent import RIGID_MOTIONS, rigid_motions
+from eulerplateau.motions import RIGID_MOTIONS, rigid_motions
 
 # rho: about the bending stiffness of a circle's first harmonic, 2 (2 pi)^4.
 _DEFLATION = 3e3

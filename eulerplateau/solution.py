@@ -5,12 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from eulerplateau.mesh import FloatArray
+from eulerplateau.mesh import FloatArray, IntArray
 
 # What an accepted equilibrium meets: force imbalance relative to the largest force, and
 # relative error of every loop edge's length.
 RESIDUAL_TOLERANCE = 1e-6
 LENGTH_TOLERANCE = 1e-8
+# Forces of larger loads overflow where they are squared.
+LARGEST_LOAD = 1e100
+# A loop that turns farther than this at a vertex (degrees) is too coarse for its own shape:
+# its equilibrium may be exact, and says nothing about a smooth loop. The excess is for
+# rounding: a regular dodecagon turns by 30 degrees.
+RESOLVED_TURNING = 30.0 * (1 + 1e-9)
 
 
 class Status(Enum):
@@ -21,6 +27,8 @@ class Status(Enum):
     STALLED = "stalled"
     SADDLE = "saddle"
     NOT_FINITE = "not_finite"
+    UNRESOLVED = "unresolved"
+    PINCHED = "pinched"
 
     @property
     def advice(self) -> str:
@@ -31,9 +39,11 @@ class Status(Enum):
 _ADVICE = {
     Status.CONVERGED: "an equilibrium within the stated tolerances",
     Status.ITERATION_LIMIT: "raise solver.max_iterations, or approach in smaller steps",
-    Status.STALLED: "rounding allows no more: take smaller load steps, or a coarser mesh",
+    Status.STALLED: "rounding allows no more: smaller load steps, or a coarser, even mesh",
     Status.SADDLE: "lower states lie close by: the load is at a transition; step past it",
-    Status.NOT_FINITE: "the energy overflowed: use a smaller load or a finer mesh",
+    Status.NOT_FINITE: "the start is not finite, or the energy overflowed: a smaller load",
+    Status.PINCHED: "two strands of the loop meet: no film spans what is between them",
+    Status.UNRESOLVED: "the loop turns by over 30 degrees at a vertex: use a finer mesh",
 }
 
 
@@ -47,13 +57,15 @@ class Equilibrium:
     multipliers : (n_b,) float
         Edge tensions lambda, the multipliers of c_v = (|e_v|^2 - s_v^2) / (2 s_v).
     load : float
-        k L^3 / alpha.
+        The film's own (load.py).
     residual : float
         |g_bending + g_film + J^T lambda|_inf over the largest of the three terms' |.|_inf.
     length_error : float
         max |l_v / s_v - 1| over the loop's edges.
     n_unstable, n_neutral, lowest_eigenvalue :
         Stability (stability.py), None where the solver does not compute it.
+    triangles : (n_t, 3) int
+        Those of a soap film whose mesh was repaired on the way; None if it was not.
     """
 
     x: FloatArray
@@ -70,6 +82,7 @@ class Equilibrium:
     n_unstable: int | None = None
     n_neutral: int | None = None
     lowest_eigenvalue: float | None = None
+    triangles: IntArray | None = None
 
     @property
     def converged(self) -> bool:

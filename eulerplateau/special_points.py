@@ -26,7 +26,6 @@ from eulerplateau.continuation import (
     make_direction,
 )
 from eulerplateau.mesh import FloatArray
-from eulerplateau.problem import Problem
 from eulerplateau.stretch import Stretch, eigenvalue, load_rate
 from eulerplateau.symmetry import ModeSymmetry, mode_symmetry
 
@@ -79,10 +78,10 @@ class SpecialPoint:
 
 
 def special_points(
-    problem: Problem, before: BranchPoint, after: BranchPoint, settings: Settings
+    before: BranchPoint, after: BranchPoint, settings: Settings
 ) -> Iterator[SpecialPoint]:
     """Yield the special points between two neighbouring points, in order of arclength."""
-    stretch = Stretch(problem, before, after, settings)
+    stretch = Stretch(before, after, settings)
     if before.direction.load * after.direction.load < 0:
         found = _turn(stretch)
         if found is not None:
@@ -107,9 +106,7 @@ def special_points(
             yield found
 
 
-def branches_from(
-    problem: Problem, special: SpecialPoint, settings: Settings
-) -> Iterator[BranchPoint]:
+def branches_from(special: SpecialPoint, settings: Settings) -> Iterator[BranchPoint]:
     """Yield a first point on each side of the other branch through a bifurcation."""
     if special.kind == FOLD:
         return
@@ -119,7 +116,7 @@ def branches_from(
         coefficients = model.basis.T @ (special.mode.ravel() * model.scale)
         away = make_direction(model, coefficients, 0.0, settings)
     for direction in (away, away.reversed()):
-        found = _step_along(problem, special.point, direction, _SWITCHING_STEP, settings)
+        found = _step_along(special.point, direction, _SWITCHING_STEP, settings)
         if found is not None:
             yield replace(found, arclength=_SWITCHING_STEP)
 
@@ -162,18 +159,16 @@ def _arclength_of_extreme(stretch: Stretch) -> float:
 
 def _across(stretch: Stretch, extreme: BranchPoint, index: int) -> Stretch | None:
     """Return the stretch of the other branch that holds the crossing."""
-    problem, settings = stretch.problem, stretch.settings
-    direction = _through(problem, extreme, index, settings)
-    back = _step_along(problem, extreme, direction, -_SWITCHING_STEP, settings)
+    settings = stretch.settings
+    direction = _through(extreme, index, settings)
+    back = _step_along(extreme, direction, -_SWITCHING_STEP, settings)
     if back is None:
         return None
-    forth = advance(problem, back, 2 * _SWITCHING_STEP, settings)
-    return None if forth is None else Stretch(problem, back, forth, settings)
+    forth = advance(back, 2 * _SWITCHING_STEP, settings)
+    return None if forth is None else Stretch(back, forth, settings)
 
 
-def _through(
-    problem: Problem, point: BranchPoint, index: int, settings: Settings
-) -> Direction:
+def _through(point: BranchPoint, index: int, settings: Settings) -> Direction:
     """Return (q, 1) with H q = -b and no part along the null vector `index`.
 
     At the bifurcation itself the bordered system has two null vectors, so the direction
@@ -181,36 +176,36 @@ def _through(
     """
     values, vectors = point.model.eigen
     others = np.arange(len(values)) != index
-    slope = vectors[:, others].T @ load_derivative(problem, point.model)
+    slope = vectors[:, others].T @ load_derivative(point.problem, point.model)
     response = -vectors[:, others] @ (slope / values[others])
     return make_direction(point.model, response, 1.0, settings)
 
 
 def _step_along(
-    problem: Problem,
     point: BranchPoint,
     direction: Direction,
     step: float,
     settings: Settings,
 ) -> BranchPoint | None:
     guess = point.x + step * direction.displacement
-    return correct(problem, guess, point.load + step * direction.load, direction, settings)
+    return correct(
+        point.problem, guess, point.load + step * direction.load, direction, settings
+    )
 
 
-def _part_along(problem: Problem, point: BranchPoint, mode: FloatArray) -> float:
-    slope = load_derivative(problem, point.model)
+def _part_along(point: BranchPoint, mode: FloatArray) -> float:
+    slope = load_derivative(point.problem, point.model)
     return abs(float(slope @ mode)) / float(np.linalg.norm(slope))
 
 
 def _describe(
     stretch: Stretch, point: BranchPoint, index: int, multiplicity: int
 ) -> SpecialPoint:
-    problem, settings = stretch.problem, stretch.settings
     values, vectors = point.model.eigen
     mode = point.model.displacement(vectors[:, index])
-    folds = _part_along(problem, point, vectors[:, index]) > _NO_PART
+    folds = _part_along(point, vectors[:, index]) > _NO_PART
     if not folds:
-        point = replace(point, direction=_through(problem, point, index, settings))
+        point = replace(point, direction=_through(point, index, stretch.settings))
     return SpecialPoint(
         kind=FOLD if folds else BIFURCATION,
         point=point,

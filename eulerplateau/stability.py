@@ -9,6 +9,9 @@ import numpy as np
 from eulerplateau.mesh import FloatArray
 from eulerplateau.tangent import TangentModel
 
+# The lowest eigenvalue of the bare circle, 2 (2 pi)^4 times 36/5.
+_SOFTEST_BENDING = 22443.0
+
 
 @dataclass(frozen=True)
 class Stability:
@@ -24,6 +27,11 @@ class Stability:
 
     eigenvalues: FloatArray
     error_bound: float
+
+    @property
+    def blind(self) -> bool:
+        """Whether rounding hides eigenvalues, even as large as those of the bare loop."""
+        return self.n_neutral > 0 and self.error_bound > 0.1 * _SOFTEST_BENDING
 
     @property
     def n_unstable(self) -> int:

@@ -9,7 +9,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from eulerplateau.continuation import NOISE, BranchPoint, Settings, along, correct
-from eulerplateau.problem import Problem
 
 _PRECISION = 1e-14
 _LOAD_ROUNDING = 4 * float(np.finfo(np.float64).eps)
@@ -19,7 +18,6 @@ _LOAD_ROUNDING = 4 * float(np.finfo(np.float64).eps)
 class Stretch:
     """A stretch of branch between two neighbouring points."""
 
-    problem: Problem
     before: BranchPoint
     after: BranchPoint
     settings: Settings
@@ -43,7 +41,7 @@ class Stretch:
         a guess between known ones: at a bifurcation a point's own direction means nothing,
         and a long step could land on the other branch.
         """
-        reach = along(self.problem, self.before, self.after, self.settings)
+        reach = along(self.before, self.after, self.settings)
         points = {0.0: self.before, reach: self.after}
 
         def value(step: float) -> float:
@@ -68,7 +66,12 @@ class Stretch:
         guess = low.x + part * (high.x - low.x)
         load = low.load + part * (high.load - low.load)
         found = correct(
-            self.problem, guess, load, self.before.direction, self.settings, (NOISE, 0.0)
+            self.before.problem,
+            guess,
+            load,
+            self.before.direction,
+            self.settings,
+            (NOISE, 0.0),
         )
         if found is None:
             raise ArithmeticError

@@ -14,24 +14,50 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
 from eulerplateau.inextensible import jacobian
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import FloatArray
+from eulerplateau.motions import free_motions
 
-RIGID_MOTIONS = 6
+# Up to this many loop vertices the whole tangent space is searched, beyond it a subspace;
+# a rough start is then smoothed on a loop of as many.
+DENSE_LOOP = 128
 
-# Row k is the matrix G_k with axis_k x r = r G_k.
-TURNS = np.array(
-    [
-        [[0, 0, 0], [0, 0, 1], [0, -1, 0]],
-        [[0, 0, -1], [0, 0, 0], [1, 0, 0]],
-        [[0, 1, 0], [-1, 0, 0], [0, 0, 0]],
-    ],
-    dtype=np.float64,
-)
+
+class CondensedEnergy(Protocol):
+    """An energy of loops (n_b, 3), the film's interior eliminated."""
+
+    @property
+    def loop(self) -> Loop:
+        """Rest lengths and bending."""
+
+    @property
+    def dense(self) -> bool:
+        """Whether matrices of all the loop's displacements are used."""
+
+    @property
+    def slides(self) -> bool:
+        """Whether the loop's sliding along itself costs nothing but by discretisation."""
+
+    @property
+    def force_rounding(self) -> float:
+        """What rounding alone leaves of a force, per unit of position."""
+
+    def film_force(self, x: FloatArray) -> FloatArray:
+        """Return the gradient of the film's energy (n_b, 3)."""
+
+    def lagrangian_hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
+        """Return the Hessian of E + lambda . c: one for all coordinates, or for each."""
+
+    def change(self, x: FloatArray, step: FloatArray) -> float:
+        """Return E(x + step) - E(x) with the relative precision of the difference."""
+
+    def holds(self, x: FloatArray) -> bool:
+        """Return whether the energy is still good at x."""
 
 
 @dataclass(frozen=True)
@@ -48,11 +74,21 @@ class LoopEnergy:
     bending: FloatArray
     film: FloatArray
 
+    @property
+    def slides(self) -> bool:
+        """Whether the loop may slide along itself: not where its rest mesh resists."""
+        return False
+
     @cached_property
     def matrix(self) -> FloatArray:
         """A (n_b, n_b)."""
         total: FloatArray = self.bending + self.film
         return total
+
+    @property
+    def dense(self) -> bool:
+        """Whether the loop is small enough for matrices of all its displacements."""
+        return len(self.loop.rest_lengths) <= DENSE_LOOP
 
     @cached_property
     def force_rounding(self) -> float:
@@ -60,14 +96,29 @@ class LoopEnergy:
         eps = float(np.finfo(np.float64).eps)
         return eps * float(np.abs(self.matrix).sum(axis=1).max())
 
+    def film_force(self, x: FloatArray) -> FloatArray:
+        """Return the gradient of the film's energy (n_b, 3)."""
+        force: FloatArray = self.film @ x
+        return force
+
+    def lagrangian_hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
+        """Return A + D^T diag(lambda / s) D (n_b, n_b), the same for every coordinate."""
+        return lagrangian_hessian(self, multipliers)
+
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return E(x + step) - E(x) with the relative precision of the difference."""
         return float(np.sum(step * (self.matrix @ (x + 0.5 * step))))
+
+    def holds(self, x: FloatArray) -> bool:
+        """Return whether x is a loop the energy was made for: always."""
+        return True
 
 
 @dataclass(frozen=True)
 class TangentModel:
     """Second-order model of the condensed energy at a loop that keeps its lengths.
+
+    Below for loops in space; of a plane loop (n_b, 2) the basis is (2 n_b, n_b - 3).
 
     Attributes
     ----------
@@ -106,41 +157,37 @@ class TangentModel:
 
     def displacement(self, coefficients: FloatArray) -> FloatArray:
         """Return the loop displacement (n_b, 3) of tangent coefficients."""
-        step: FloatArray = (self.basis @ coefficients / self.scale).reshape(-1, 3)
+        step: FloatArray = (self.basis @ coefficients / self.scale).reshape(self.x.shape)
         return step
 
 
-def rigid_motions(x: FloatArray) -> FloatArray:
-    """Return the three translations and three rotations of x (n, 3) as columns (3 n, 6)."""
-    centred = x - x.mean(axis=0)
-    motions = np.empty((len(x), 3, RIGID_MOTIONS))
-    motions[:, :, :3] = np.eye(3)
-    motions[:, :, 3:] = (centred @ TURNS).transpose(1, 2, 0)
-    return motions.reshape(-1, RIGID_MOTIONS)
-
-
-def tangent_model(energy: LoopEnergy, x: FloatArray) -> TangentModel:
+def tangent_model(energy: CondensedEnergy, x: FloatArray) -> TangentModel:
     """Build the model at loop positions x (n_b, 3) that keep their lengths."""
-    loop, n = energy.loop, len(x)
-    scale = np.repeat(np.sqrt(loop.mean_lengths), 3)
-    bending, film = loop.bending_force(x), energy.film @ x
+    loop, (n, d) = energy.loop, x.shape
+    scale = np.repeat(np.sqrt(loop.mean_lengths), d)
+    bending, film = loop.bending_force(x), energy.film_force(x)
     gradient = bending + film
     rows = jacobian(loop, x)
-    normals = np.hstack([(rows / scale).T, rigid_motions(x) * scale[:, None]])
+    free = free_motions(loop, x, energy.slides)
+    normals = np.hstack([(rows / scale).T, free * scale[:, None]])
     q, r = np.linalg.qr(normals, mode="complete")
     weighted = gradient.ravel() / scale
     multipliers = -np.linalg.solve(r[:n, :n], q[:, :n].T @ weighted)
-    tension = (rows.T @ multipliers).reshape(-1, 3)
+    tension = (rows.T @ multipliers).reshape(n, d)
     forces = max(float(np.abs(f).max()) for f in (bending, film, tension))
-    basis = q[:, n + RIGID_MOTIONS :]
-    hessian = lagrangian_hessian(energy, multipliers)
-    root = scale[::3]
+    # Not gradient + tension: along motions that cost a soap film nothing its mesh leaves a
+    # discretisation error.
+    basis = q[:, n + free.shape[1] :]
+    unbalanced = basis @ (basis.T @ weighted) * scale
+    hessian = energy.lagrangian_hessian(x, multipliers)
+    # One matrix for all coordinates, or one for the displacements of all of them.
+    root = scale[:: d * n // len(hessian)]
     scaled = hessian / (root * root[:, None])
-    projected = basis.T @ (scaled @ basis.reshape(n, -1)).reshape(3 * n, -1)
+    projected = basis.T @ (scaled @ basis.reshape(len(scaled), -1)).reshape(d * n, -1)
     return TangentModel(
         x=x,
         multipliers=multipliers,
-        residual=float(np.abs(gradient + tension).max()) / forces,
+        residual=float(np.abs(unbalanced).max()) / forces,
         rounding=energy.force_rounding * float(np.abs(x).max()) / forces,
         basis=basis,
         gradient=basis.T @ weighted,
@@ -151,11 +198,17 @@ def tangent_model(energy: LoopEnergy, x: FloatArray) -> TangentModel:
 
 def lagrangian_hessian(energy: LoopEnergy, multipliers: FloatArray) -> FloatArray:
     """Return A + D^T diag(lambda / s) D (n_b, n_b)."""
-    stress = multipliers / energy.loop.rest_lengths
-    n = len(stress)
-    hessian: FloatArray = energy.matrix + np.diag(stress + np.roll(stress, 1))
-    v = np.arange(n)
-    # Not hessian[i, j] -= ...: with three vertices an entry can occur twice.
-    np.subtract.at(hessian, (v, (v + 1) % n), stress)
-    np.subtract.at(hessian, ((v + 1) % n, v), stress)
+    hessian: FloatArray = energy.matrix + stress_stiffness(energy.loop, multipliers)
     return hessian
+
+
+def stress_stiffness(loop: Loop, multipliers: FloatArray) -> FloatArray:
+    """Return D^T diag(lambda / s) D (n_b, n_b): what tension adds to the stiffness."""
+    stress = multipliers / loop.rest_lengths
+    n = len(stress)
+    stiffness = np.diag(stress + np.roll(stress, 1))
+    v = np.arange(n)
+    # Not stiffness[i, j] -= ...: with three vertices an entry can occur twice.
+    np.subtract.at(stiffness, (v, (v + 1) % n), stress)
+    np.subtract.at(stiffness, ((v + 1) % n, v), stress)
+    return stiffness

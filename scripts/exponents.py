@@ -53,7 +53,7 @@ def locate(mesh: DiskMesh, problem: Problem) -> tuple[float, float]:
     flat = solve(problem, mesh.x, np.zeros(mesh.n_b), WINDOW[0])
     settings = Settings(load_range=WINDOW, load_unit=WINDOW[1])
     start = first_point(problem, flat.x[mesh.loop], WINDOW[0], settings)
-    visits = explore(problem, start, settings, Limits(special_points=0))
+    visits = explore(start, settings, Limits(special_points=0))
     special = next(v.special for v in visits if v.special is not None)
     return special.point.load, special.load_error
 

@@ -12,13 +12,13 @@ import shapes
 from equilibria import critical_point
 
 from eulerplateau import newton
+from eulerplateau.condensed import loop_energy
 from eulerplateau.continuation import BranchPoint, Settings, first_point
 from eulerplateau.exploration import Limits, Visit, explore
 from eulerplateau.inextensible import close_with_lengths
 from eulerplateau.measures import waist_path, waist_twist
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.meshing import load_mesh
-from eulerplateau.newton import loop_energy
 from eulerplateau.problem import Problem, make_problem
 from eulerplateau.special_points import SpecialPoint
 
@@ -66,7 +66,7 @@ def elongated() -> Diagram:
     mesh = load_mesh(ROOT / "meshes" / "elongated.vtp")
     problem = make_problem(mesh)
     start = stable_point(problem, mesh, 1.0, SETTINGS)
-    return Diagram(mesh, problem, tuple(explore(problem, start, SETTINGS, Limits())))
+    return Diagram(mesh, problem, tuple(explore(start, SETTINGS, Limits())))
 
 
 def stable_point(

@@ -7,27 +7,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from eulerplateau import newton
-from eulerplateau.film import Film
+from eulerplateau.condensed import loop_energy
 from eulerplateau.inextensible import project_lengths
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.problem import Problem
+from eulerplateau.solution import Status
 from eulerplateau.tangent import LoopEnergy, TangentModel, tangent_model
-
-
-def dirichlet(mesh: DiskMesh) -> Film:
-    """Cotangent weights of the rest mesh: load * sum w |e|^2 is sigma/2 int |grad x|^2.
-
-    With load = sigma_hat. For the identity map it is sigma_hat times the area.
-    """
-    pairs, weights = [], []
-    for corner in range(3):
-        apex, i, j = np.roll(mesh.triangles, corner, axis=1).T
-        a, b = mesh.x[i] - mesh.x[apex], mesh.x[j] - mesh.x[apex]
-        doubled_area = np.linalg.norm(np.cross(a, b), axis=1)
-        pairs.append(np.stack([i, j], axis=1))
-        weights.append((a * b).sum(axis=1) / doubled_area / 4)
-    return Film(np.concatenate(pairs), np.concatenate(weights), 1.0)
 
 
 def critical_point(energy: LoopEnergy, x_loop: FloatArray) -> TangentModel:
@@ -57,7 +43,7 @@ def planar(problem: Problem, mesh: DiskMesh, loads: Iterable[float]) -> list[Tan
     x = start.x[mesh.loop] * [1.0, 1.0, 0.0]
     found = []
     for load in loads:
-        found.append(critical_point(newton.loop_energy(problem, load), x))
+        found.append(critical_point(loop_energy(problem, load), x))
         x = found[-1].x
     return found
 
@@ -67,6 +53,19 @@ def ring(n: int) -> tuple[Loop, FloatArray]:
     angle = 2 * np.pi * np.arange(n) / n
     x = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
     return Loop(np.full(n, 1 / n)), x / (2 * n * np.sin(np.pi / n))
+
+
+def turning(x_loop: FloatArray) -> float:
+    """The largest angle, in degrees, between consecutive edges of a loop (n_b, 3)."""
+    edges = np.roll(x_loop, -1, axis=0) - x_loop
+    edges = edges / np.linalg.norm(edges, axis=1, keepdims=True)
+    chords = np.linalg.norm(edges - np.roll(edges, 1, axis=0), axis=1)
+    return float(np.degrees(2 * np.arcsin(np.minimum(chords.max() / 2, 1.0))))
+
+
+def verdict(x_loop: FloatArray) -> Status:
+    """What the status of an equilibrium has to be: is its loop (n_b, 3) fine enough?"""
+    return Status.UNRESOLVED if turning(x_loop) > 30 else Status.CONVERGED
 
 
 def distance_up_to_motion(x: FloatArray, y: FloatArray) -> float:

@@ -55,8 +55,12 @@ def record(
     *,
     vertices: int = 474,
     solver: str = "newton",
+    model: str = "springs",
 ) -> Path:
-    summary = {"mesh": {"vertices": vertices}, "spec": {"solver": {"name": solver}}}
+    summary = {
+        "mesh": {"vertices": vertices},
+        "spec": {"film": {"model": model}, "solver": {"name": solver}},
+    }
     is_branches = isinstance(rows[0], BranchRow) if rows else False
     name, kind = ("branches", BranchRow) if is_branches else ("sweep", Row)
     with RunFolder.create(path, summary, name, kind) as folder:

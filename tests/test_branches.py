@@ -44,7 +44,7 @@ def test_every_point_has_its_row_and_its_shape(result: Exploration) -> None:
     for row in rows:
         assert row.converged
         shape = read_shape(result.folder / shape_name(row.step))
-        assert (shape.step, shape.load, shape.energy) == (
+        assert (shape.step, shape.kL3_alpha, shape.energy) == (
             row.step, row.kL3_alpha, row.energy
         )  # fmt: skip
     series = ElementTree.parse(result.folder / "branches.pvd").getroot()
@@ -58,6 +58,9 @@ def test_special_points_are_rows_too(result: Exploration) -> None:
     assert row.special == int(special["number"]) == 0
     assert row.kL3_alpha == float(special["kL3_alpha"])
     assert float(special["kL3_alpha_error"]) < 1e-8 * row.kL3_alpha
+    assert row.sigma_hat == float(special["sigma_hat"])
+    errors = float(special["sigma_hat_error"]), float(special["kL3_alpha_error"])
+    assert errors[0] / errors[1] == pytest.approx(row.sigma_hat / row.kL3_alpha)
     assert row.branch == int(special["branch"]) == 0
     assert special["kind"] == BIFURCATION
     assert abs(float(special["eigenvalue"])) < 1e-6 * abs(result.rows[0].lowest_eigenvalue)

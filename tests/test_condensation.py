@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import equilibria
 import numpy as np
 import pytest
 import shapes
 
 from eulerplateau.condensation import condense
-from eulerplateau.film import springs
+from eulerplateau.film import dirichlet, springs
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.problem import Problem, make_problem
 
@@ -115,7 +114,7 @@ def test_stiffness_of_a_disk_converges_to_the_dirichlet_to_neumann_map() -> None
     errors: dict[int, list[float]] = {1: [], 2: [], 4: []}
     for rings in sizes:
         mesh = shapes.mesh_of(*shapes.disk_points(rings))
-        laplacian = equilibria.dirichlet(mesh).laplacian(mesh.n_v)
+        laplacian = dirichlet(mesh).laplacian(mesh.n_v)
         stiffness = condense(laplacian, mesh.loop, mesh.interior).stiffness
         phi = np.arctan2(*mesh.x[mesh.loop].T[1::-1])
         for n, found in errors.items():

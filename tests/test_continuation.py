@@ -23,7 +23,6 @@ from eulerplateau.continuation import (
     load_derivative,
 )
 from eulerplateau.mesh import FloatArray
-from eulerplateau.problem import Problem
 from eulerplateau.symmetry import loop_distance
 
 # Far enough to rise above rounding, near enough for the leading order.
@@ -70,11 +69,11 @@ def test_directions_are_tangents(found: Diagram, some: list[BranchPoint]) -> Non
     for point in some:
         gaps = []
         for step in STEPS:
-            after = advance(found.problem, point, step, SETTINGS)
+            after = advance(point, step, SETTINGS)
             assert after is not None
             gap = after.x - point.x - step * point.direction.displacement
             gaps.append(float(np.linalg.norm(gap)))
-            assert along(found.problem, point, after, SETTINGS) == pytest.approx(step)
+            assert along(point, after, SETTINGS) == pytest.approx(step)
         if point.direction.load < 0.999 * SETTINGS.load_unit:
             assert fitted_order(STEPS, gaps) == pytest.approx(2.0, abs=0.1)
 
@@ -91,7 +90,7 @@ def test_steps_of_any_length_give_minima_that_newton_confirms(
     )
     for number, last in ((0, 650.0), (1, 750.0)):
         start = found.branch(number)[0].point
-        points = follow(found.problem, start, settings)
+        points = follow(start, settings)
         before = list(takewhile(partial(is_below, last), points))
         assert len(before) >= 5
         for point in before:
@@ -115,24 +114,24 @@ def newton_energy(found: Diagram, near: BranchPoint) -> float:
 def test_branches_end_outside_the_window_or_where_told(found: Diagram) -> None:
     start = found.branch(0)[0].point
     narrow = replace(SETTINGS, load_range=(1.0, 300.0))
-    loads = [point.load for point in follow(found.problem, start, narrow)]
+    loads = [point.load for point in follow(start, narrow)]
     assert loads == sorted(loads)
     assert all(load <= 300.0 for load in loads[:-1])
     assert loads[-1] > 300.0
     few = replace(SETTINGS, max_points=3)
-    assert len(list(follow(found.problem, start, few))) == 3
-    stopped = list(follow(found.problem, start, SETTINGS, lambda at: at.load > 100.0))
+    assert len(list(follow(start, few))) == 3
+    stopped = list(follow(start, SETTINGS, lambda at: at.load > 100.0))
     assert [point.load > 100.0 for point in stopped[-2:]] == [False, True]
 
 
 def test_reversed_branch_is_the_same_branch(found: Diagram) -> None:
     """There and back: the same load and the same loop."""
     start = diagram.regular(found.branch(1))[4]
-    there = advance(found.problem, start, 5e-3, SETTINGS)
+    there = advance(start, 5e-3, SETTINGS)
     assert there is not None
     turned = replace(there, direction=there.direction.reversed())
-    reach = along(found.problem, turned, start, SETTINGS)
-    back = advance(found.problem, turned, reach, SETTINGS)
+    reach = along(turned, start, SETTINGS)
+    back = advance(turned, reach, SETTINGS)
     assert back is not None
     assert back.load == pytest.approx(start.load, rel=1e-10)
     assert loop_distance(back.x, start.x) < 1e-8
@@ -140,7 +139,7 @@ def test_reversed_branch_is_the_same_branch(found: Diagram) -> None:
 
 def test_arclength_grows_by_the_distance_gone(found: Diagram) -> None:
     for before, after in pairwise(diagram.regular(found.branch(1))):
-        moved = along(found.problem, before, after, SETTINGS)
+        moved = along(before, after, SETTINGS)
         assert after.arclength - before.arclength == pytest.approx(moved, rel=1e-6)
 
 
@@ -160,8 +159,8 @@ def test_folds_are_passed() -> None:
 
 
 def folding() -> Iterator[BranchPoint]:
-    problem, start, settings = diagram.folding_branch()
-    return islice(follow(problem, start, settings), 20)
+    _, start, settings = diagram.folding_branch()
+    return islice(follow(start, settings), 20)
 
 
 def longest_extent(x: FloatArray) -> float:
@@ -172,6 +171,5 @@ def test_no_step_where_there_is_no_branch(found: Diagram) -> None:
     """An arclength far beyond the film's size is refused, and no NaN comes back."""
     start = found.branch(0)[0].point
     settings: Settings = SETTINGS
-    problem: Problem = found.problem
     for step in (50.0, -50.0):
-        assert advance(problem, start, step, settings) is None
+        assert advance(start, step, settings) is None

@@ -15,8 +15,8 @@ from diagram import SETTINGS, Diagram
 from eulerplateau.continuation import BranchPoint
 from eulerplateau.exploration import Limits, Visit, explore
 from eulerplateau.mesh import FloatArray
+from eulerplateau.motions import rigid_motions
 from eulerplateau.special_points import SpecialPoint
-from eulerplateau.tangent import rigid_motions
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +143,7 @@ def short(found: Diagram, limits: Limits) -> Iterator[Visit]:
     """Explore loads around the twisted saddle only."""
     settings = replace(SETTINGS, load_range=(600.0, 1000.0))
     start = diagram.stable_point(found.problem, found.mesh, 610.0, settings)
-    return explore(found.problem, start, settings, limits)
+    return explore(start, settings, limits)
 
 
 @pytest.mark.parametrize(("allowed", "branches"), [(0, 1), (1, 3), (2, 5)])

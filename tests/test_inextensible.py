@@ -137,3 +137,36 @@ def test_a_loop_of_the_right_shape_and_the_wrong_size_keeps_its_shape(scale: flo
 
 def test_a_loop_that_is_a_point_has_no_directions_to_keep(loop: Loop) -> None:
     assert close_with_lengths(loop, np.ones((len(loop.rest_lengths), 3))) is None
+
+
+def uneven(ratio: float) -> tuple[Loop, FloatArray]:
+    """A ring in space, one edge of which is shorter than the others."""
+    angle = 2 * np.pi * np.arange(24) / 24
+    x = np.stack([np.cos(angle), np.sin(angle), 0.2 * np.sin(2 * angle)], axis=1)
+    x[5] = x[4] + ratio * (x[5] - x[4])
+    lengths = np.linalg.norm(np.roll(x, -1, axis=0) - x, axis=1)
+    return Loop(lengths / lengths.sum()), x / lengths.sum()
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1e-2, 1e-4, 1e-6])
+def test_wrong_lengths_next_to_a_short_edge_do_not_throw_it_about(ratio: float) -> None:
+    """Lengths off by one per cent: no edge turns by more than about as much."""
+    loop, x = uneven(ratio)
+    off = 1 + 0.01 * RNG.uniform(-1, 1, (24, 1))
+    moved = np.concatenate([np.zeros((1, 3)), np.cumsum(off * loop.chords(x), axis=0)[:-1]])
+    given = loop.chords(moved)
+    found = project_lengths(loop, moved)
+    assert found is not None
+    rounding = 1e-15 / float(loop.rest_lengths.min())
+    assert loop.length_error(found) < max(1e-14, rounding)
+    turned = loop.chords(found) / loop.rest_lengths[:, None]
+    given /= np.linalg.norm(given, axis=1, keepdims=True)
+    assert np.linalg.norm(turned - given, axis=1).max() < 0.02
+
+
+@pytest.mark.parametrize("ratio", [0.1, 1e-4])
+def test_uneven_loop_that_keeps_its_lengths_stays_where_it_is(ratio: float) -> None:
+    loop, x = uneven(ratio)
+    found = project_lengths(loop, x)
+    assert found is not None
+    assert np.abs(found - x).max() < 1e-15

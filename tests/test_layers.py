@@ -17,12 +17,13 @@ import eulerplateau
 # The layers of docs/architecture.md from the bottom up: modules and subpackages of
 # eulerplateau. A new one needs a place here.
 LAYERS = (
-    "__init__ errors kernels mesh parameters planar solution",
-    "condensation curvature dissection film inextensible intersections loop "
-    "measures meshing scaling symmetry",
-    "cell problem tangent",
-    "coarsening conjugate_gradient loop_model modes newton primal_dual shifted_inverse "
-    "stability trust_region",
+    "__init__ errors flip_kernels kernels load mesh parameters planar solution",
+    "area_film chart condensation conformal curvature dissection film harmonic "
+    "inextensible intersections loop measures meshing motions plane_film repair scaling "
+    "symmetry",
+    "area_energy cell condensed plane_energy problem tangent",
+    "coarsening conjugate_gradient descent loop_model modes newton plane_newton "
+    "primal_dual shifted_inverse soap_newton stability trial_space trust_region",
     "continuation exploration special_points stretch",
     "branch_plots ensemble gallery output planar_plots plots render run_plots runs",
     "__main__ cli",

@@ -9,21 +9,16 @@ import shapes
 
 from eulerplateau import newton
 from eulerplateau.coarsening import coarsen
+from eulerplateau.condensed import loop_energy
 from eulerplateau.inextensible import jacobian, length_metric
 from eulerplateau.loop import Loop
 from eulerplateau.loop_model import lowest_modes, subspace_model
 from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.newton import loop_energy
+from eulerplateau.motions import rigid_motions
 from eulerplateau.problem import Problem, make_problem
 from eulerplateau.shifted_inverse import shifted_inverse, tangent_space
 from eulerplateau.stability import stability
-from eulerplateau.tangent import (
-    LoopEnergy,
-    TangentModel,
-    lagrangian_hessian,
-    rigid_motions,
-    tangent_model,
-)
+from eulerplateau.tangent import LoopEnergy, TangentModel, lagrangian_hessian, tangent_model
 from eulerplateau.trust_region import trust_region_step
 
 STABLE_LOADS = {"ellipse": 600.0, "twisted": 700.0, "eight": 800.0, "bent": 2500.0}

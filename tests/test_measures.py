@@ -167,11 +167,15 @@ def test_waist_path_crosses_from_tip_to_tip_without_a_gap_also_along_edges() -> 
     for mesh in (stretched, ellipse_mesh(9)):
         path = waist_path(mesh)
         assert path is not None
-        ends = np.einsum("npc,ncd->npd", path.weights, mesh.x[path.corners])
-        np.testing.assert_allclose(ends[1:, 0], ends[:-1, 1], atol=1e-9)
-        span = np.linalg.norm(ends[-1, 1] - ends[0, 0])
+        both = np.einsum("npc,ncd->npd", path.weights, mesh.x[path.corners])
         distances = mesh.x[mesh.loop][:, None] - mesh.x[mesh.loop]
-        assert span == pytest.approx(np.linalg.norm(distances, axis=2).max(), rel=1e-12)
+        longest = np.linalg.norm(distances, axis=2).max()
+        there, back = np.split(both, path.first[1:])
+        for ends in (there, back):
+            np.testing.assert_allclose(ends[1:, 0], ends[:-1, 1], atol=1e-9)
+            span = np.linalg.norm(ends[-1, 1] - ends[0, 0])
+            assert span == pytest.approx(longest, rel=1e-12)
+        np.testing.assert_allclose(there[0, 0], back[-1, 1], atol=1e-9)
         assert (path.weights >= 0.0).all()
         np.testing.assert_allclose(path.weights.sum(axis=2), 1.0, rtol=1e-12)
 

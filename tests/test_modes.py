@@ -9,8 +9,9 @@ import pytest
 from conftest import ROOT
 
 from eulerplateau import newton
+from eulerplateau.condensed import loop_energy
 from eulerplateau.modes import lowest_modes
-from eulerplateau.newton import loop_energy, solve
+from eulerplateau.newton import solve
 from eulerplateau.parameters import validate
 from eulerplateau.problem import make_problem
 from eulerplateau.runs.spec import RunSpec
@@ -22,10 +23,10 @@ from eulerplateau.tangent import tangent_model
 def test_lowest_mode_has_the_lowest_eigenvalue_and_keeps_lengths(
     elongated, monkeypatch, dense
 ):
-    if not dense:
-        monkeypatch.setattr("eulerplateau.modes.DENSE_LOOP", 40)
     problem = make_problem(elongated)
     found = solve(problem, elongated.x, np.zeros(elongated.n_b), 700.0)
+    if not dense:
+        monkeypatch.setattr("eulerplateau.tangent.DENSE_LOOP", 40)
     mode = lowest_modes(problem, found, 1)["mode_0"]
     assert np.linalg.norm(mode, axis=1).max() == pytest.approx(1.0)
     loop = problem.loop_vertices

@@ -8,10 +8,11 @@ import pytest
 import shapes
 
 from eulerplateau import newton
+from eulerplateau.condensed import loop_energy
 from eulerplateau.mesh import DiskMesh, FloatArray
+from eulerplateau.motions import rigid_motions
 from eulerplateau.problem import Problem, make_problem
 from eulerplateau.stability import stability
-from eulerplateau.tangent import rigid_motions
 
 
 def whole_film_index(
@@ -98,7 +99,7 @@ def test_morse_index_of_films_in_space_is_that_of_the_whole_film(
     )
     around = stable.x[oval.loop]
     while load >= 500.0:
-        model = equilibria.critical_point(newton.loop_energy(oval_problem, load), around)
+        model = equilibria.critical_point(loop_energy(oval_problem, load), around)
         x = oval_problem.condensed.extend(model.x)
         met.append(stability(model).n_unstable)
         assert met[-1] == whole_film_index(oval_problem, x, model.multipliers, load)

@@ -15,6 +15,7 @@ from shapes import disk_points, eight, mesh_of
 
 from eulerplateau.curvature import angle_defects, loop_frame
 from eulerplateau.errors import OutputError
+from eulerplateau.load import SPRING_LOAD
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.output.folder import RunFolder, shape_name
 from eulerplateau.output.table import COLUMNS, Row, RowWriter, read_rows
@@ -42,6 +43,7 @@ ROW = Row(
     waist_twist=90.0,
     self_intersections=0,
     aspect=0.56,
+    min_angle=21.5,
 )
 
 
@@ -59,7 +61,8 @@ def test_columns_are_those_users_were_promised() -> None:
     promised = (
         "step kL3_alpha sigma_hat energy film_energy bending_energy abs_kappa_n "
         "total_gauss_curvature area n_unstable lowest_eigenvalue residual length_error "
-        "iterations seconds status max_turning waist_twist self_intersections aspect"
+        "iterations seconds status max_turning waist_twist self_intersections aspect "
+        "min_angle"
     )
     assert list(COLUMNS) == promised.split()
 
@@ -118,12 +121,12 @@ def test_a_table_that_is_not_ours_is_refused(tmp_path: Path, content: bytes) -> 
 def test_shape_reads_back_bit_for_bit(tmp_path: Path, mesh: DiskMesh) -> None:
     x = twisted(mesh, 0.4) + 1e-13
     path = tmp_path / "shape.vtp"
-    write_shape(path, mesh, x, step=3, load=0.1 + 0.2, energy=1.0 / 3.0)
+    write_shape(path, mesh, x, replace(ROW, step=3, energy=1.0 / 3.0))
     shape = read_shape(path)
     assert np.array_equal(shape.x, x)
     assert np.array_equal(shape.triangles, mesh.triangles)
     assert np.array_equal(shape.loop, mesh.loop)
-    assert (shape.step, shape.load, shape.energy) == (3, 0.1 + 0.2, 1.0 / 3.0)
+    assert (shape.step, shape.kL3_alpha, shape.energy) == (3, 0.1 + 0.2, 1.0 / 3.0)
 
 
 def test_pyvista_finds_every_field_where_it_belongs(tmp_path: Path, mesh: DiskMesh) -> None:
@@ -132,7 +135,8 @@ def test_pyvista_finds_every_field_where_it_belongs(tmp_path: Path, mesh: DiskMe
     x = twisted(mesh, 0.4)
     mode = np.random.default_rng(1).standard_normal(x.shape)
     path = tmp_path / "shape.vtp"
-    write_shape(path, mesh, x, step=3, load=700.0, energy=50.0, modes={"mode_0": mode})
+    row = replace(ROW, step=3, kL3_alpha=700.0, sigma_hat=2424.0, energy=50.0)
+    write_shape(path, mesh, x, row, modes={"mode_0": mode})
     film = pyvista.read(path)
     frame = loop_frame(mesh, x)
     for name in ("kappa", "kappa_n", "kappa_g", "contact_angle", "tangent", "normal"):
@@ -145,6 +149,7 @@ def test_pyvista_finds_every_field_where_it_belongs(tmp_path: Path, mesh: DiskMe
     assert set(np.flatnonzero(film.point_data["on_loop"])) == set(mesh.loop)
     assert np.array_equal(film.point_data["mode_0"], mode)
     assert film.field_data["kL3_alpha"][0] == 700.0
+    assert film.field_data["sigma_hat"][0] == 2424.0
     assert film.field_data["energy"][0] == 50.0
     assert film.field_data["step"][0] == 3
     assert np.array_equal(film.lines, [mesh.n_b + 1, *mesh.loop, mesh.loop[0]])
@@ -154,7 +159,7 @@ def test_pyvista_finds_every_field_where_it_belongs(tmp_path: Path, mesh: DiskMe
 @pytest.mark.parametrize("part", [0.0, 0.3, 0.6, 0.95])
 def test_part_of_a_shape_is_refused(tmp_path: Path, mesh: DiskMesh, part: float) -> None:
     path = tmp_path / "shape.vtp"
-    write_shape(path, mesh, mesh.x, step=0, load=1.0, energy=1.0)
+    write_shape(path, mesh, mesh.x, ROW)
     content = path.read_bytes()
     path.write_bytes(content[: int(part * len(content))])
     with pytest.raises(OutputError):
@@ -175,7 +180,7 @@ def test_series_has_rising_distinct_times(
     tmp_path: Path, loads: list[float], times: list[float]
 ) -> None:
     entries = [(i, load, shape_name(i)) for i, load in enumerate(loads)]
-    write_series(tmp_path / "sweep.pvd", entries)
+    write_series(tmp_path / "sweep.pvd", entries, SPRING_LOAD)
     found = ElementTree.parse(tmp_path / "sweep.pvd").getroot().findall(".//DataSet")
     assert [float(entry.attrib["timestep"]) for entry in found] == times
     load_of = {name: load for _, load, name in entries}
@@ -223,7 +228,7 @@ def test_path_below_a_file_is_an_output_error(tmp_path: Path, mesh: DiskMesh) ->
     with pytest.raises(OutputError):
         RowWriter(below)
     with pytest.raises(OutputError):
-        write_shape(below, mesh, mesh.x, step=0, load=1.0, energy=1.0)
+        write_shape(below, mesh, mesh.x, ROW)
     with pytest.raises(OutputError):
         read_shape(below)
     with pytest.raises(OutputError):

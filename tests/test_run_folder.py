@@ -67,7 +67,7 @@ def check_run(path: Path, n_rows: int) -> None:
     assert len(rows) == n_rows
     for row in rows:
         shape = read_shape(path / shape_name(row.step))
-        assert (shape.step, shape.load) == (row.step, row.kL3_alpha)
+        assert (shape.step, shape.kL3_alpha) == (row.step, row.kL3_alpha)
     series = ElementTree.parse(path / "sweep.pvd").getroot().findall(".//DataSet")
     assert len(series) >= n_rows
     for entry in series:

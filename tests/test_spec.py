@@ -237,6 +237,36 @@ def test_spring_constants_become_loads_k_length_cubed_over_alpha(tmp_path: Path)
     assert sweep(tmp_path, text.replace("'k'", "'kL3_alpha'")).loads() == [1.0, 3.0]
 
 
+@pytest.mark.parametrize("film", ["dirichlet", "area"])
+def test_tensions_become_loads_sigma_length_cubed_over_alpha(
+    tmp_path: Path, film: str
+) -> None:
+    text = "loads = [3, 1]\nquantity = 'sigma'\n[loop]\nalpha = 0.5\nlength = 2\n[film]\n"
+    text += f"model = '{film}'"
+    assert sweep(tmp_path, text).loads() == [16.0, 48.0]
+    for own in ("quantity = 'sigma_hat'", ""):
+        assert sweep(tmp_path, text.replace("quantity = 'sigma'", own)).loads() == [1, 3]
+
+
+@pytest.mark.parametrize(
+    ("film", "own", "others"),
+    [
+        ("springs", ("k", "kL3_alpha"), ("sigma", "sigma_hat")),
+        ("dirichlet", ("sigma", "sigma_hat"), ("k", "kL3_alpha")),
+        ("area", ("sigma", "sigma_hat"), ("k", "kL3_alpha")),
+    ],
+)
+def test_quantity_has_to_be_one_of_the_film(
+    tmp_path: Path, film: str, own: tuple[str, ...], others: tuple[str, ...]
+) -> None:
+    text = f"{GOOD}\n[film]\nmodel = '{film}'\n"
+    for quantity in own:
+        assert read(tmp_path, text, sweep__quantity=quantity).loads() == [1, 2.5]
+    for quantity in others:
+        named = key_of_mistake(tmp_path, text, sweep__quantity=quantity)
+        assert named == "sweep.quantity"
+
+
 def test_shipped_runs_are_valid_and_their_meshes_exist() -> None:
     for path in sorted((Path(__file__).parents[1] / "runs").glob("*.toml")):
         spec = load_run(path, {})

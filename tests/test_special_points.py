@@ -43,8 +43,8 @@ def specials_along(
     problem: Problem, start: BranchPoint, settings: Settings
 ) -> list[SpecialPoint]:
     before, specials = start, []
-    for after in follow(problem, start, settings):
-        specials += special_points(problem, before, after, settings)
+    for after in follow(start, settings):
+        specials += special_points(before, after, settings)
         before = after
     return specials
 
@@ -151,7 +151,7 @@ def test_sides_of_a_pitchfork_are_mirror_images(found: Diagram) -> None:
     for special in found.specials:
         if special.arrived:
             continue
-        one, other = branches_from(found.problem, special, SETTINGS)
+        one, other = branches_from(special, SETTINGS)
         assert loop_distance(one.x, other.x * MIRROR) < 1e-6
         assert other.load == pytest.approx(one.load, rel=1e-9)
         assert found.energy(other) == pytest.approx(found.energy(one), rel=1e-9)
@@ -163,9 +163,9 @@ def test_pitchforks_open_as_the_square_of_the_amplitude(found: Diagram) -> None:
     for special in found.specials:
         if special.arrived:
             continue
-        side = next(iter(branches_from(found.problem, special, SETTINGS)))
+        side = next(iter(branches_from(special, SETTINGS)))
         fine = Settings(SETTINGS.load_range, SETTINGS.load_unit, 2e-4, 2e-4, max_points=12)
-        points = list(follow(found.problem, side, fine))
+        points = list(follow(side, fine))
         excess = [point.load - special.point.load for point in points]
         assert min(excess) > 0
         sizes = [amplitude(found.problem, special, point) for point in points]
@@ -182,14 +182,14 @@ def test_pitchforks_are_supercritical(found: Diagram) -> None:
     for special in found.specials:
         if special.arrived:
             continue
-        above = advance(found.problem, special.point, 2e-3, SETTINGS)
-        below = advance(found.problem, special.point, -2e-3, SETTINGS)
+        above = advance(special.point, 2e-3, SETTINGS)
+        below = advance(special.point, -2e-3, SETTINGS)
         assert above is not None
         assert below is not None
         assert above.load > special.point.load > below.load
         assert above.stability.n_unstable == special.n_unstable + 1
         assert below.stability.n_unstable == special.n_unstable
-        for side in branches_from(found.problem, special, SETTINGS):
+        for side in branches_from(special, SETTINGS):
             assert side.load > special.point.load
             assert side.stability.n_unstable == special.n_unstable
 
@@ -203,7 +203,7 @@ def test_folds_are_told_from_bifurcations() -> None:
     assert fold.symmetry.breaks == ()
     assert abs(fold.eigenvalue) <= fold.point.stability.error_bound
     assert fold.load_error < PRECISION * fold.point.load
-    assert list(branches_from(problem, fold, settings)) == []
+    assert list(branches_from(fold, settings)) == []
     steps = [1e-3, 2e-3, 4e-3]
     ends = both_ways(problem, fold.point, steps, settings)
     rise = [sum(end.load for end in pair) - 2 * fold.point.load for pair in ends]
@@ -220,7 +220,7 @@ def both_ways(
     back = replace(point, direction=point.direction.reversed())
     ends = []
     for step in steps:
-        pair = [advance(problem, way, step, settings) for way in (point, back)]
+        pair = [advance(way, step, settings) for way in (point, back)]
         ends.append([end for end in pair if end is not None])
     assert all(len(pair) == 2 for pair in ends)
     return ends

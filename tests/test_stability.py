@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import equilibria
 import numpy as np
 import pytest
 import shapes
 
-from eulerplateau import newton
-from eulerplateau.film import SPRING_TENSION
+from eulerplateau.condensed import loop_energy
+from eulerplateau.load import SPRING_TENSION
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.problem import Problem, make_problem
 from eulerplateau.stability import Stability, stability
@@ -36,7 +34,7 @@ def within(n: int) -> float:
 def disk_problem(rings: int) -> tuple[DiskMesh, Problem]:
     """A disk whose film is exactly the Dirichlet energy; the load is sigma_hat."""
     mesh = shapes.mesh_of(*shapes.disk_points(rings))
-    return mesh, replace(make_problem(mesh), film=equilibria.dirichlet(mesh))
+    return mesh, make_problem(mesh, "dirichlet")
 
 
 def split(model: TangentModel, n: int) -> tuple[FloatArray, FloatArray]:
@@ -131,7 +129,7 @@ def threshold(rings: int, where: str, n: int) -> float:
     x = mesh.x[mesh.loop]
     pair = []
     for load in (0.95 * base, 1.05 * base):
-        model = tangent_model(newton.loop_energy(problem, load), x)
+        model = tangent_model(loop_energy(problem, load), x)
         assert model.residual < 10 * model.rounding
         pair.append(near_zero(model, x, where, n))
     low, high = pair
@@ -160,7 +158,7 @@ def onset(mesh: DiskMesh) -> float:
     x = equilibria.planar(problem, mesh, [100, 300, 500, low])[-1].x
     while high - low > 1e-3:
         middle = 0.5 * (low + high)
-        model = equilibria.critical_point(newton.loop_energy(problem, middle), x)
+        model = equilibria.critical_point(loop_energy(problem, middle), x)
         if model.eigen[0][0] > 0:
             low, x = middle, model.x
         else:
@@ -202,7 +200,7 @@ def test_error_bound_covers_what_a_rotation_changes_the_eigenvalues_by(
     oval: DiskMesh, oval_problem: Problem
 ) -> None:
     """Exactly equal but for rounding, and rounding is what the bound is for."""
-    energy = newton.loop_energy(oval_problem, 700.0)
+    energy = loop_energy(oval_problem, 700.0)
     model = equilibria.planar(oval_problem, oval, [300.0, 700.0])[-1]
     here = stability(model)
     turned = stability(tangent_model(energy, model.x @ shapes.rotation().T))

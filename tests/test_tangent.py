@@ -7,18 +7,19 @@ import numpy as np
 import pytest
 import shapes
 
-from eulerplateau import newton
+from eulerplateau.condensed import loop_energy
 from eulerplateau.inextensible import jacobian, project_lengths
 from eulerplateau.mesh import DiskMesh, FloatArray
+from eulerplateau.motions import rigid_motions
 from eulerplateau.problem import Problem
-from eulerplateau.tangent import LoopEnergy, TangentModel, rigid_motions, tangent_model
+from eulerplateau.tangent import LoopEnergy, TangentModel, tangent_model
 
 RNG = np.random.default_rng(8)
 LOAD = 900.0
 
 
 def model_at(problem: Problem, x_loop: FloatArray, load: float) -> TangentModel:
-    return tangent_model(newton.loop_energy(problem, load), x_loop)
+    return tangent_model(loop_energy(problem, load), x_loop)
 
 
 def energy_of(problem: Problem, x_loop: FloatArray) -> float:
@@ -59,7 +60,7 @@ def test_rigid_motions_keep_lengths_and_energy(
 ) -> None:
     motions = rigid_motions(bent)
     rows = jacobian(oval_problem.loop, bent)
-    energy = newton.loop_energy(oval_problem, LOAD)
+    energy = loop_energy(oval_problem, LOAD)
     np.testing.assert_allclose(rows @ motions, 0, atol=1e-13)
     work = motions.T @ (energy.matrix @ bent).ravel()
     assert np.abs(work).max() < 1e-12 * np.abs(energy.matrix @ bent).sum()
@@ -69,7 +70,7 @@ def test_rigid_motions_keep_lengths_and_energy(
 def test_loop_energy_and_its_changes_are_those_of_the_kernels(
     oval_problem: Problem, bent: FloatArray
 ) -> None:
-    energy = newton.loop_energy(oval_problem, LOAD)
+    energy = loop_energy(oval_problem, LOAD)
     value = 0.5 * np.sum(bent * (energy.matrix @ bent))
     assert value == pytest.approx(energy_of(oval_problem, bent), rel=1e-12)
     step = 1e-3 * RNG.standard_normal(bent.shape)
@@ -100,7 +101,7 @@ def test_gradient_and_hessian_have_taylor_slopes_2_and_3_along_projected_curves(
 ) -> None:
     """Off equilibrium too, thanks to least-squares multipliers: the projection bends the
     curve along the constraint's normals, and they leave no force there."""
-    energy = newton.loop_energy(oval_problem, LOAD)
+    energy = loop_energy(oval_problem, LOAD)
     model = tangent_model(energy, bent)
     # Among the thirty softest modes: stiffer ones are nonlinear at a smaller amplitude.
     weights = np.random.default_rng(seed).standard_normal(30)
@@ -114,7 +115,7 @@ def test_gradient_and_hessian_have_taylor_slopes_2_and_3_along_projected_curves(
 def test_second_derivative_of_the_energy_at_an_equilibrium_is_the_hessian(
     oval: DiskMesh, oval_problem: Problem
 ) -> None:
-    energy = newton.loop_energy(oval_problem, LOAD)
+    energy = loop_energy(oval_problem, LOAD)
     model = equilibria.planar(oval_problem, oval, [300.0, LOAD])[-1]
     values, vectors = model.eigen
     for mode in (0, 1, 5, 20):

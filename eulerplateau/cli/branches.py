@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eulerplateau.cli.settings import load_single
+from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:
     from eulerplateau.output.table import BranchRow
@@ -33,13 +34,15 @@ if TYPE_CHECKING:
 @click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
 def branches(
     spec: Path, out: Path | None, settings: tuple[str, ...], pictures: bool, quiet: bool
-) -> None:
+) -> int:
     """Follow the branches of equilibria of RUN.toml, stable and unstable, through folds.
 
     Writes branches.csv (one row per point), special_points.csv (folds and bifurcations,
     their loads located by an eigenvalue's crossing), shapes/*.vtp with the critical
     modes, branches.pvd (for ParaView), run.json, branches.png.
     """
+    from eulerplateau.solution import Status
+
     run = load_single(spec, settings)
     folder = out or spec.with_name(f"{spec.stem}-branches")
     result = _explore(run, folder, quiet)
@@ -51,6 +54,14 @@ def branches(
             drawn.append("branches.png")
     if not quiet:
         _report(result, drawn)
+    if not result.unresolved:
+        return 0
+    click.echo(
+        f"eulerplateau: {folder}: {result.unresolved} of {len(result.rows)} points "
+        f"{Status.UNRESOLVED.value}: {Status.UNRESOLVED.advice}",
+        err=True,
+    )
+    return NOT_CONVERGED_EXIT_CODE
 
 
 def _explore(run: RunSpec, folder: Path, quiet: bool) -> Exploration:
@@ -64,7 +75,7 @@ def _explore(run: RunSpec, folder: Path, quiet: bool) -> Exploration:
 
         def show(row: BranchRow) -> None:
             bar.set_postfix_str(
-                f"branch {row.branch}, kL3/alpha {row.kL3_alpha:g}, "
+                f"branch {row.branch}, {row.load_name.text} {row.load:g}, "
                 f"<|kappa_n|> {row.abs_kappa_n:.3g}, {row.n_unstable} unstable"
             )
             bar.update()
@@ -73,10 +84,11 @@ def _explore(run: RunSpec, folder: Path, quiet: bool) -> Exploration:
 
 
 def _report(result: Exploration, drawn: list[str]) -> None:
+    load = result.rows[0].load_name
     for point in result.special:
         click.echo(
-            f"{point['kind']} {point['number']} at kL3/alpha = {point['kL3_alpha']:.8g} "
-            f"+- {point['kL3_alpha_error']:.1g} on branch {point['branch']}, breaks: "
+            f"{point['kind']} {point['number']} at {load.text} = {point[load.column]:.8g} "
+            f"+- {point[f'{load.column}_error']:.1g} on branch {point['branch']}, breaks: "
             f"{point['breaks'] or 'nothing'}"
         )
     number = 1 + max(row.branch for row in result.rows)

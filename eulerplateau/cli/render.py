@@ -19,8 +19,8 @@ from eulerplateau.errors import OutputError
     "loads",
     type=float,
     multiple=True,
-    help="Show the shape nearest to this load kL^3/alpha on each branch that reaches it; "
-    "may be repeated.",
+    help="Show the shape nearest to this load (kL^3/alpha of springs, else sigma_hat) on "
+    "each branch that reaches it; may be repeated.",
 )
 @click.option("--all", "everything", is_flag=True, help="Show every shape.")
 @click.option(

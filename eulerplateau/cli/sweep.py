@@ -114,7 +114,7 @@ def _run(spec: RunSpec, folder: Path, quiet: bool) -> RunResult:
 
         def show(row: Row) -> None:
             bar.set_postfix_str(
-                f"kL3/alpha {row.kL3_alpha:g}, <|kappa_n|> {row.abs_kappa_n:.3g}"
+                f"{row.load_name.text} {row.load:g}, <|kappa_n|> {row.abs_kappa_n:.3g}"
             )
             bar.update()
 
@@ -142,8 +142,8 @@ def _draw(result: RunResult, pictures: bool, render: bool) -> list[str]:
 def _report(result: RunResult, drawn: list[str], quiet: bool) -> None:
     for row in result.failures:
         click.echo(
-            f"eulerplateau: {result.folder}: load {row.kL3_alpha:g} {row.status.value}: "
-            f"{row.status.advice}",
+            f"eulerplateau: {result.folder}: {row.load_name.text} {row.load:g} "
+            f"{row.status.value}: {row.status.advice}",
             err=True,
         )
     if result.neutral and not quiet:

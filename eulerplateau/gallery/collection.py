@@ -14,13 +14,16 @@ from eulerplateau.errors import OutputError
 from eulerplateau.gallery.alignment import settled
 from eulerplateau.mesh import FloatArray, IntArray
 from eulerplateau.output.folder import shape_name
-from eulerplateau.output.table import BranchRow, Row, read_rows
+from eulerplateau.output.reading import read_tables
+from eulerplateau.output.table import BranchRow, Row
 from eulerplateau.output.vtk import read_shape
 
 
 @dataclass(frozen=True)
 class Mesh:
     """What the shapes of a run have in common, and often those of several runs.
+
+    Only a soap film that was repaired has other triangles (Run.tilings).
 
     Attributes
     ----------
@@ -74,6 +77,8 @@ class Run:
     mesh : int, the number of the run's mesh in the gallery
     shapes : (n_rows, n_v, 3) float, in units of L, each turned to lie close to the one
         before it
+    tilings : where triangles change: the row from which on, and (n_t, 3) int
+        The first is (0, the mesh's).
     """
 
     name: str
@@ -82,6 +87,11 @@ class Run:
     special: dict[int, dict[str, str]]
     mesh: int
     shapes: FloatArray
+    tilings: tuple[tuple[int, IntArray], ...]
+
+    def triangles(self, place: int) -> IntArray:
+        """Return the triangles (n_t, 3) of a row's shape."""
+        return next(tiles for first, tiles in self.tilings[::-1] if first <= place)
 
 
 @dataclass(frozen=True)
@@ -96,21 +106,22 @@ def collect(folders: Sequence[Path]) -> Gallery:
     """Read run folders as `sweep` and `branches` write them, finished or not.
 
     Raises OutputError naming the folder that is no run or has no rows yet, or the file
-    that cannot be read or does not belong there. A folder named twice counts once.
+    that cannot be read or does not belong there. A folder named twice counts once; of films
+    of different kinds all loads are sigma_hat.
     """
     distinct = list({folder.resolve(): folder for folder in folders}.values())
     meshes: list[Mesh] = []
     runs: list[Run] = []
-    for folder, name in zip(distinct, _names(distinct), strict=True):
-        rows, series, special = _read_tables(folder)
-        if not rows:
-            raise OutputError(folder, "has no rows yet: there is nothing to show")
-        mesh, x = _read_shapes(folder, rows)
+    for folder, name, rows in zip(
+        distinct, _names(distinct), read_tables(distinct), strict=True
+    ):
+        series, special = _curves(folder, rows)
+        mesh, x, tilings = _read_shapes(folder, rows)
         place = next((i for i, other in enumerate(meshes) if other.is_same(mesh)), None)
         if place is None:
             place = len(meshes)
             meshes.append(mesh)
-        runs.append(Run(name, tuple(rows), tuple(series), special, place, x))
+        runs.append(Run(name, tuple(rows), tuple(series), special, place, x, tilings))
     for place, mesh in enumerate(meshes):
         _settle(runs, place, mesh.loop)
     return Gallery(tuple(runs), tuple(meshes))
@@ -126,21 +137,14 @@ def _names(folders: Sequence[Path]) -> list[str]:
     return []
 
 
-def _read_tables(
-    folder: Path,
-) -> tuple[Sequence[Row], list[Series], dict[int, dict[str, str]]]:
-    rows: Sequence[Row]
-    if (folder / "branches.csv").is_file():
-        branches = read_rows(folder / "branches.csv", BranchRow)
-        rows, series = branches, _branches(branches)
-        special = _read_special(folder / "special_points.csv")
-    elif (folder / "sweep.csv").is_file():
-        rows = read_rows(folder / "sweep.csv")
-        series, special = _legs(rows), {}
-    else:
-        problem = "is no run folder: it has neither a sweep.csv nor a branches.csv"
-        raise OutputError(folder, problem)
-    return rows, series, special
+def _curves(
+    folder: Path, rows: Sequence[Row]
+) -> tuple[list[Series], dict[int, dict[str, str]]]:
+    """Return the curves of a run's rows, and its special points."""
+    branches = [row for row in rows if isinstance(row, BranchRow)]
+    if not branches:
+        return _legs(rows), {}
+    return _branches(branches), _read_special(folder / "special_points.csv")
 
 
 def _branches(rows: Sequence[BranchRow]) -> list[Series]:
@@ -156,14 +160,14 @@ def _branches(rows: Sequence[BranchRow]) -> list[Series]:
         group = "the first branch"
         if origin is not None:
             at = rows[origin]
-            group = f"from point {rows[places[0]].origin} at {at.kL3_alpha:.6g}"
+            group = f"from point {rows[places[0]].origin} at {at.load:.6g}"
         found.append(Series(f"branch {number}", group, places[0], places[-1], origin))
     return found
 
 
 def _legs(rows: Sequence[Row]) -> list[Series]:
     """Split a sweep where its load turns; each leg but the first starts at the turn."""
-    rising = [after.kL3_alpha >= row.kL3_alpha for row, after in pairwise(rows)] or [True]
+    rising = [after.load >= row.load for row, after in pairwise(rows)] or [True]
     turns = [place for place in range(1, len(rising)) if rising[place] != rising[place - 1]]
     legs = []
     first = 0
@@ -188,22 +192,27 @@ def _read_special(path: Path) -> dict[int, dict[str, str]]:
         raise OutputError(path, problem) from None
 
 
-def _read_shapes(folder: Path, rows: Sequence[Row]) -> tuple[Mesh, FloatArray]:
-    """Return the run's mesh and the positions (n_rows, n_v, 3)."""
+def _read_shapes(
+    folder: Path, rows: Sequence[Row]
+) -> tuple[Mesh, FloatArray, tuple[tuple[int, IntArray], ...]]:
+    """Return the run's mesh, the positions (n_rows, n_v, 3) and the triangles they have."""
     mesh: Mesh | None = None
-    x = []
+    x: list[FloatArray] = []
+    tilings: list[tuple[int, IntArray]] = []
     for row in rows:
         path = folder / shape_name(row.step)
         shape = read_shape(path)
         own = Mesh(len(shape.x), shape.triangles, shape.loop)
         mesh = mesh or own
-        if not own.is_same(mesh):
+        if own.n_v != mesh.n_v or not np.array_equal(own.loop, mesh.loop):
             raise OutputError(path, f"has another mesh than {shape_name(rows[0].step)}")
+        if not tilings or not np.array_equal(own.triangles, tilings[-1][1]):
+            tilings.append((len(x), own.triangles))
         if not np.isfinite(shape.x).all():
             raise OutputError(path, "has positions that are not finite")
         x.append(shape.x)
     assert mesh is not None  # there are rows
-    return mesh, np.array(x)
+    return mesh, np.array(x), tuple(tilings)
 
 
 def _settle(runs: list[Run], mesh: int, loop: IntArray) -> None:

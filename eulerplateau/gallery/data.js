@@ -16,6 +16,7 @@ function readGallery(element) {
   const runs = gallery.runs.map((run) => ({
     ...run,
     mesh: meshes[run.mesh],
+    tilings: run.tilings.map(([first, text]) => [first, decode(text, Uint32Array)]),
     shapes: decode(run.shapes, Int16Array),
     rows: run.rows.map((cells) =>
       Object.fromEntries(cells.map((cell, column) => [gallery.columns[column], cell]))),
@@ -28,6 +29,12 @@ function positions(gallery, run, place) {
   const size = 3 * run.mesh.vertices;
   const whole = run.shapes.subarray(place * size, (place + 1) * size);
   return Float32Array.from(whole, (value) => value * gallery.unit);
+}
+
+// Triangles of one shape: the mesh's, but where a film's mesh was repaired.
+function triangles(run, place) {
+  const changed = run.tilings.filter(([first]) => first <= place);
+  return changed.length ? changed.at(-1)[1] : run.mesh.triangles;
 }
 
 // Every curve of the diagram: a branch or a leg of a sweep, with the points it is drawn

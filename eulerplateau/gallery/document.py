@@ -58,6 +58,7 @@ def _data(gallery: Gallery) -> dict[str, Any]:
     unit = size / _INT16 or 1.0
     return {
         "columns": [*COLUMNS, "special"],
+        "load": gallery.runs[0].rows[0].quantity,
         "unit": unit,
         "eye": EYE.tolist(),
         "halfSize": np.max(seen, axis=0).tolist(),
@@ -78,6 +79,9 @@ def _run(run: Run, unit: float) -> dict[str, Any]:
     return {
         "name": run.name,
         "mesh": run.mesh,
+        "tilings": [
+            [first, _base64(tiles.astype("<u4"))] for first, tiles in run.tilings[1:]
+        ],
         "shapes": _base64(np.rint(run.shapes / unit).astype("<i2")),
         "series": [asdict(series) for series in run.series],
         "special": run.special,

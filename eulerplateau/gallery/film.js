@@ -40,13 +40,13 @@ class Film {
     new ResizeObserver(() => this.fit()).observe(canvas.parentElement);
   }
 
-  show(mesh, x) {
+  show(mesh, triangles, x) {
     const L = Libraries;
-    if (mesh !== this.mesh) {
-      this.mesh = mesh;
+    if (triangles !== this.triangles) {
+      this.triangles = triangles;
       this.parts[0].geometry.dispose();
       const sheet = new L.BufferGeometry();
-      sheet.setIndex(new L.BufferAttribute(mesh.triangles, 1));
+      sheet.setIndex(new L.BufferAttribute(triangles, 1));
       for (const part of this.parts) part.geometry = sheet;
     }
     const sheet = this.parts[0].geometry;

@@ -4,6 +4,7 @@ const gallery = readGallery(document.getElementById("data"));
 const all = curves(gallery);
 const find = (id) => document.getElementById(id);
 const several = gallery.runs.length > 1;
+const load = QUANTITIES.find(({ key }) => key === gallery.load);
 let shown = null; // { curve, place }: place is the row's number in its run
 let film = null;
 
@@ -14,9 +15,10 @@ function show(curve, place) {
   Object.assign(document.body.dataset, {
     run: curve.run.name, series: curve.name, step: row.step,
   });
-  film?.show(curve.run.mesh, positions(gallery, curve.run, place));
+  film?.show(
+    curve.run.mesh, triangles(curve.run, place), positions(gallery, curve.run, place));
   diagram.mark(row);
-  find("headline").textContent = `${curve.name}: kL³/α = ${text(row.kL3_alpha, 7)}`;
+  find("headline").textContent = `${curve.name}: ${load.symbol} = ${text(row[load.key], 7)}`;
   find("place").max = curve.places.length - 1;
   find("place").value = place - curve.first;
   find("row").replaceChildren(
@@ -144,6 +146,7 @@ try {
 }
 makeLegend();
 makeChoice("x");
+find("x").value = load.key;
 makeChoice("y");
 setAxes();
 show(all[0], all[0].first);

@@ -36,7 +36,7 @@ class Branch:
     @property
     def loads(self) -> FloatArray:
         """Loads (n,)."""
-        return np.array([row.kL3_alpha for row in self.rows])
+        return np.array([row.load for row in self.rows])
 
     @property
     def abs_kappa_n(self) -> FloatArray:
@@ -115,15 +115,15 @@ def energy_above(first: Branch) -> Callable[[Branch], FloatArray]:
     """
     rising: list[BranchRow] = []
     for row in first.rows:
-        if rising and row.kL3_alpha <= rising[-1].kL3_alpha:
+        if rising and row.load <= rising[-1].load:
             break
         rising.append(row)
     if len(rising) < 2:
         return lambda branch: np.full(len(branch.rows), np.nan)
-    loads = np.array([row.kL3_alpha for row in rising])
+    loads = np.array([row.load for row in rising])
     energy = np.array([row.energy for row in rising])
     slope = np.array([row.film_energy for row in rising]) / loads
     base = CubicHermiteSpline(loads, energy, slope, extrapolate=False)
     return lambda branch: np.array(
-        [row.energy - float(base(row.kL3_alpha)) for row in branch.rows]
+        [row.energy - float(base(row.load)) for row in branch.rows]
     )

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LOAD = r"$kL^3/\alpha$"
 ABS_KAPPA_N = r"$\langle|\kappa_n|\rangle=\oint|\kappa_n|\,ds$"
 
 # Okabe and Ito's colours: told apart by the colour-blind and, by lightness, in grey.

@@ -91,17 +91,9 @@ class RunFolder:
         stays valid.
         """
         name = shape_name(row.step)
-        write_shape(
-            self.path / name,
-            mesh,
-            x,
-            step=row.step,
-            load=row.kL3_alpha,
-            energy=row.energy,
-            modes=modes,
-        )
-        self._shapes.append((row.step, row.kL3_alpha, name))
-        write_series(self._series, self._shapes)
+        write_shape(self.path / name, mesh, x, row, modes)
+        self._shapes.append((row.step, row.load, name))
+        write_series(self._series, self._shapes, row.load_name)
         self._rows.append(row)
 
     def write_summary(self, summary: Mapping[str, object]) -> None:

@@ -40,7 +40,7 @@ def distinct_steps(rows: Sequence[Row]) -> list[int]:
 def legs(rows: Sequence[Row]) -> list[tuple[bool, list[Row]]]:
     """Split a sweep where its load turns; a turning point belongs to both legs."""
     found = []
-    steps = groupby(pairwise(rows), key=lambda pair: pair[1].kL3_alpha >= pair[0].kL3_alpha)
+    steps = groupby(pairwise(rows), key=lambda pair: pair[1].load >= pair[0].load)
     for rising, pairs in steps:
         ends = list(pairs)
         found.append((rising, [ends[0][0], *(after for _, after in ends)]))
@@ -54,7 +54,7 @@ def _shown(state: list[Row]) -> Row:
         return max(state, key=lambda row: (row.self_intersections, row.abs_kappa_n))
     largest = max(row.abs_kappa_n for row in state)
     full = [row for row in state if row.abs_kappa_n >= _FULL * largest]
-    return min(full, key=lambda row: row.kL3_alpha)
+    return min(full, key=lambda row: row.load)
 
 
 def _kind(row: Row) -> tuple[bool, int, bool]:

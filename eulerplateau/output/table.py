@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
 from eulerplateau.errors import OutputError
+from eulerplateau.load import LOADS, SPRING_LOAD, Load
 from eulerplateau.solution import Status
 
 
 @dataclass(frozen=True)
 class Row:
-    """One load of a sweep; the fields, in this order, are the columns of sweep.csv.
+    """One load of a sweep; its fields but the last, in this order, are sweep.csv's columns.
+
+    `quantity` says which of kL3_alpha and sigma_hat is to be taken for the load; the table
+    does not repeat it in every row, for run.json knows the film.
 
     Units: lengths L, energies alpha/L, max_turning and waist_twist degrees. None is an
     empty cell ("not computed"); a float that came out as NaN or infinite is written `nan`
@@ -41,6 +45,18 @@ class Row:
     waist_twist: float
     self_intersections: int | None
     aspect: float
+    min_angle: float
+    quantity: str = field(default=SPRING_LOAD.column, kw_only=True)
+
+    @property
+    def load(self) -> float:
+        """The load, in the unit that `quantity` says."""
+        return float(getattr(self, self.quantity))
+
+    @property
+    def load_name(self) -> Load:
+        """What this load is called."""
+        return LOADS[self.quantity]
 
     @property
     def converged(self) -> bool:
@@ -66,7 +82,12 @@ class BranchRow(Row):
     arclength: float
 
 
-COLUMNS = tuple(column.name for column in fields(Row))
+def columns(row_type: type[Row]) -> tuple[str, ...]:
+    """Return the names of the columns of a table of such rows."""
+    return tuple(column.name for column in fields(row_type) if not column.kw_only)
+
+
+COLUMNS = columns(Row)
 
 _INTEGERS = {
     "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special"
@@ -87,7 +108,7 @@ class RowWriter:
 
     def __init__(self, path: Path, row_type: type[Row] = Row) -> None:
         self._path = path
-        self._columns = [column.name for column in fields(row_type)]
+        self._columns = columns(row_type)
         try:
             # Unbuffered: a row reaches the file in one write, and Ctrl-C finds no half.
             self._file = path.open("wb", buffering=0)
@@ -137,8 +158,12 @@ class RowWriter:
             raise OutputError(self._path, problem) from None
 
 
-def read_rows(path: Path, row_type: type[RowType] = Row) -> list[RowType]:  # type: ignore[assignment]
-    """Read a table of rows back, bit for bit.
+def read_rows(
+    path: Path,
+    row_type: type[RowType] = Row,  # type: ignore[assignment]
+    quantity: str = SPRING_LOAD.column,
+) -> list[RowType]:
+    """Read a table of rows back, bit for bit, with `quantity` for their load.
 
     Raises OutputError naming the line and column that is not as RowWriter wrote it, or if
     the file cannot be read.
@@ -149,22 +174,22 @@ def read_rows(path: Path, row_type: type[RowType] = Row) -> list[RowType]:  # ty
         raise OutputError(path, f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise OutputError(path, "is not a text file; expected a sweep.csv") from None
-    columns = [column.name for column in fields(row_type)]
-    if header != ",".join(columns):
-        raise OutputError(path, f"the first line should be {','.join(columns)}")
+    names = columns(row_type)
+    if header != ",".join(names):
+        raise OutputError(path, f"the first line should be {','.join(names)}")
     return [
-        row_type(**_values(path, columns, number, line))
+        row_type(**_values(path, names, number, line), quantity=quantity)
         for number, line in enumerate(lines, start=2)
     ]
 
 
-def _values(path: Path, columns: list[str], number: int, line: str) -> dict[str, Any]:
+def _values(path: Path, names: tuple[str, ...], number: int, line: str) -> dict[str, Any]:
     cells = line.split(",")
-    if len(cells) != len(columns):
-        problem = f"line {number} has {len(cells)} cells, not {len(columns)}"
+    if len(cells) != len(names):
+        problem = f"line {number} has {len(cells)} cells, not {len(names)}"
         raise OutputError(path, problem)
     values = {}
-    for name, text in zip(columns, cells, strict=True):
+    for name, text in zip(names, cells, strict=True):
         try:
             values[name] = _value(name, text)
         except ValueError as error:

@@ -18,8 +18,10 @@ from numpy.typing import NDArray
 
 from eulerplateau.curvature import angle_defects, loop_frame
 from eulerplateau.errors import OutputError
+from eulerplateau.load import Load
 from eulerplateau.mesh import DiskMesh, FloatArray, IntArray
 from eulerplateau.output.files import write_whole
+from eulerplateau.output.table import Row
 
 _LOOP_FIELDS = ("kappa", "kappa_n", "kappa_g", "contact_angle", "tangent", "normal")
 
@@ -33,15 +35,15 @@ class Shape:
     x : (n_v, 3) float, lengths in units of L
     triangles : (n_t, 3) int
     loop : (n_b,) int
-    step, load, energy :
-        The row of sweep.csv it belongs to: number, k L^3 / alpha, energy in alpha/L.
+    step, kL3_alpha, energy :
+        Of the row of sweep.csv it belongs to.
     """
 
     x: FloatArray
     triangles: IntArray
     loop: IntArray
     step: int
-    load: float
+    kL3_alpha: float  # noqa: N815 - the column's name
     energy: float
 
 
@@ -49,18 +51,15 @@ def write_shape(
     path: Path,
     mesh: DiskMesh,
     x: FloatArray,
-    *,
-    step: int,
-    load: float,
-    energy: float,
+    row: Row,
     modes: Mapping[str, FloatArray] | None = None,
 ) -> None:
     """Write the film at positions `x` (n_v, 3) to `path` (.vtp), exactly and whole.
 
     Point fields on the loop: kappa, kappa_n, kappa_g, contact_angle, tangent, normal (of
     the film); inside: angle_defect; everywhere: on_loop (1 or 0) and the vectors `modes`,
-    (n_v, 3) each, under their names. Field data: step, kL3_alpha, energy. Raises
-    OutputError if the file cannot be written.
+    (n_v, 3) each, under their names. Field data, of its `row`: step, kL3_alpha, sigma_hat,
+    energy. Raises OutputError if the file cannot be written.
     """
     from vtkmodules.vtkCommonDataModel import vtkPolyData
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
@@ -72,8 +71,8 @@ def write_shape(
     film.SetPolys(_cells(mesh.triangles))
     for name, values in (_point_fields(mesh, x) | dict(modes or {})).items():
         film.GetPointData().AddArray(_array(name, values))
-    for name, value in (("step", step), ("kL3_alpha", load), ("energy", energy)):
-        film.GetFieldData().AddArray(_array(name, np.array([value])))
+    for name in ("step", "kL3_alpha", "sigma_hat", "energy"):
+        film.GetFieldData().AddArray(_array(name, np.array([getattr(row, name)])))
 
     # Through a string, since VTK's own files end up empty on a full disk, in silence.
     writer = vtkXMLPolyDataWriter()
@@ -111,21 +110,22 @@ def read_shape(path: Path) -> Shape:
         triangles=triangles.reshape(-1, 3).astype(np.int64),
         loop=closed[:-1].astype(np.int64),
         step=int(about.GetArray("step").GetValue(0)),
-        load=float(about.GetArray("kL3_alpha").GetValue(0)),
+        kL3_alpha=float(about.GetArray("kL3_alpha").GetValue(0)),
         energy=float(about.GetArray("energy").GetValue(0)),
     )
 
 
-def write_series(path: Path, shapes: Sequence[tuple[int, float, str]]) -> None:
+def write_series(path: Path, shapes: Sequence[tuple[int, float, str]], load: Load) -> None:
     """Write the .pvd series `path` over `shapes`: (step, load, file relative to `path`).
 
-    The time ParaView shows is the load kL^3/alpha if the loads only rise or only fall,
+    The time ParaView shows is the load if the loads only rise or only fall,
     and the step otherwise: a sweep up and down meets each load twice, and ParaView shows
     one shape per time. Raises OutputError if the file cannot be written.
     """
-    change = np.diff([load for _, load, _ in shapes])
+    change = np.diff([value for _, value, _ in shapes])
     by_load = bool((change > 0).all() or (change < 0).all())
-    timed = sorted((load if by_load else step, name) for step, load, name in shapes)
+    timed = sorted((value if by_load else step, name) for step, value, name in shapes)
+    time_is = f"load {load.text}" if by_load else "step"
     lines = [
         f'    <DataSet timestep="{time!r}" part="0" file={quoteattr(name)}/>'
         for time, name in timed
@@ -133,7 +133,7 @@ def write_series(path: Path, shapes: Sequence[tuple[int, float, str]]) -> None:
     content = "\n".join(
         [
             '<?xml version="1.0"?>',
-            f"<!-- timestep is the {'load kL^3/alpha' if by_load else 'step'} -->",
+            f"<!-- timestep is the {time_is} -->",
             '<VTKFile type="Collection" version="0.1">',
             "  <Collection>",
             *lines,

@@ -36,11 +36,11 @@ def _nearest(run: Run, load: float) -> list[int]:
         rows = list(run.rows[series.first : series.last + 1])
         if series.origin is not None:
             rows.insert(0, run.rows[series.origin])
-        loads = [row.kL3_alpha for row in rows]
+        loads = [row.load for row in rows]
         if min(loads) <= load <= max(loads):
-            found.append(min(rows, key=lambda row: abs(row.kL3_alpha - load)).step)
+            found.append(min(rows, key=lambda row: abs(row.load - load)).step)
     if not found:
-        loads = [row.kL3_alpha for row in run.rows]
+        loads = [row.load for row in run.rows]
         problem = f"no branch reaches {load:g}: loads are {min(loads):g} to {max(loads):g}"
         raise SpecError("--load", problem)
     return found

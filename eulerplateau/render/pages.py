@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eulerplateau.output.figure import LOAD
 from eulerplateau.output.table import BranchRow, Row
 from eulerplateau.render.colours import Scale
 from eulerplateau.render.scene import Pixels
@@ -27,7 +26,7 @@ _ALMOST_WHITE = 248
 
 def caption(row: Row) -> str:
     """Return what is written below the shape of a row."""
-    parts = [f"{LOAD[:-1]} = {row.kL3_alpha:.6g}$"]
+    parts = [f"${row.load_name.tex} = {row.load:.6g}$"]
     if isinstance(row, BranchRow):
         parts.append(f"branch {row.branch}")
     if not row.converged:

@@ -73,8 +73,8 @@ class RunPictures:
             fields = {i: read_field(folder / name, colour) for i, name in names.items()}
         scale = scale_of(colour, list(fields.values())) if fields else None
         shapes = [
-            Shape(x, mesh.triangles, mesh.loop, row.step, row.kL3_alpha, row.energy)
-            for row, x in zip(run.rows, run.shapes, strict=True)
+            Shape(x, run.triangles(i), mesh.loop, row.step, row.kL3_alpha, row.energy)
+            for i, (row, x) in enumerate(zip(run.rows, run.shapes, strict=True))
         ]
         return cls(folder, run, tuple(shapes), tuple(places), colour, fields, scale)
 

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from eulerplateau.errors import OutputError
 from eulerplateau.mesh import FloatArray
 from eulerplateau.output.branches import Branch, read_branches
+from eulerplateau.output.reading import read_tables
 from eulerplateau.output.states import distinct_steps, is_planar, legs
-from eulerplateau.output.table import BranchRow, Row, read_rows
+from eulerplateau.output.table import BranchRow, Row
 
 Quantity = Callable[[Row], float | None]
 
@@ -55,8 +55,8 @@ class Run:
         if self.branches:
             bridge = next((branch for branch in self.branches if branch.bridges), None)
             return None if bridge is None else (bridge.loads.min(), bridge.loads.max())
-        alike = groupby(sorted(self.first_leg, key=lambda row: row.kL3_alpha), is_planar)
-        states = [(planar, [row.kL3_alpha for row in rows]) for planar, rows in alike]
+        alike = groupby(sorted(self.first_leg, key=lambda row: row.load), is_planar)
+        states = [(planar, [row.load for row in rows]) for planar, rows in alike]
         return next((band for band in _between_planar(states)), None)
 
     def states(self) -> list[Row]:
@@ -66,7 +66,7 @@ class Run:
         else:
             chosen = set(distinct_steps(self.rows))
             found = [row for row in self.rows if row.step in chosen]
-        return sorted(found, key=lambda row: row.kL3_alpha)
+        return sorted(found, key=lambda row: row.load)
 
 
 @dataclass(frozen=True)
@@ -84,12 +84,16 @@ class Piece:
 def read_runs(folders: Sequence[Path]) -> list[Run]:
     """Read run folders as `sweep` and `branches` write them, finished or not.
 
-    A folder named twice counts once. Raises OutputError naming the folder that is no run
+    A folder named twice counts once; of films of different kinds all loads are sigma_hat.
+    Raises OutputError naming the folder that is no run
     or has no rows yet, or the table that cannot be read.
     """
     distinct = list({folder.resolve(): folder for folder in folders}.values())
     labels = _labels(distinct)
-    return [_read(*pair) for pair in zip(distinct, labels, strict=True)]
+    return [
+        Run(label, folder, tuple(rows), tuple(_branches(rows)))
+        for label, folder, rows in zip(labels, distinct, read_tables(distinct), strict=True)
+    ]
 
 
 def pieces(run: Run, quantity: Quantity) -> Iterator[Piece]:
@@ -108,30 +112,18 @@ def pieces(run: Run, quantity: Quantity) -> Iterator[Piece]:
     if not run.branches:
         for rising, leg in legs(run.rows):
             good = [row for row in leg if row.converged]
-            loads = np.array([row.kL3_alpha for row in good])
+            loads = np.array([row.load for row in good])
             values = _values(good, quantity)
             if np.isfinite(values).any():
                 yield Piece(loads, values, rising)
 
 
-def _read(folder: Path, label: str) -> Run:
-    branches: tuple[Branch, ...] = ()
-    rows: Sequence[Row]
-    if (folder / "branches.csv").is_file():
-        found = read_rows(folder / "branches.csv", BranchRow)
-        rows, branches = found, tuple(read_branches(found))
-    elif (folder / "sweep.csv").is_file():
-        rows = read_rows(folder / "sweep.csv")
-    else:
-        problem = "is no run folder: it has neither a sweep.csv nor a branches.csv"
-        raise OutputError(folder, problem)
-    if not rows:
-        raise OutputError(folder, "has no rows yet: there is nothing to plot")
-    return Run(label, folder, tuple(rows), branches)
+def _branches(rows: Sequence[Row]) -> list[Branch]:
+    return read_branches([row for row in rows if isinstance(row, BranchRow)])
 
 
 def _labels(folders: Sequence[Path]) -> list[str]:
-    """Return the ends of the paths that tell runs apart, and meshes and solvers that do."""
+    """Return the ends of the paths that tell runs apart, and what of run.json does."""
     parts = [folder.resolve().parts for folder in folders]
     names = [folder.name for folder in folders]
     for count in range(1, max((len(part) for part in parts), default=0) + 1):
@@ -146,13 +138,14 @@ def _labels(folders: Sequence[Path]) -> list[str]:
     ]
 
 
-def _notes(folder: Path) -> tuple[str, str]:
-    """Return what run.json says of the mesh's size and of the solver."""
+def _notes(folder: Path) -> tuple[str, ...]:
+    """Return what run.json says of the film, of the mesh's size and of the solver."""
     try:
         about: dict[str, Any] = json.loads((folder / "run.json").read_bytes())
-        return f"{about['mesh']['vertices']} vertices", about["spec"]["solver"]["name"]
+        film, solver = about["spec"]["film"]["model"], about["spec"]["solver"]["name"]
+        return film, f"{about['mesh']['vertices']} vertices", solver
     except (OSError, ValueError, KeyError, TypeError):
-        return "", ""
+        return "", "", ""
 
 
 def _stretches(branch: Branch) -> Iterator[tuple[bool, slice]]:
@@ -171,11 +164,11 @@ def _middles(branch: Branch) -> list[Row]:
 def _distinct(rows: Sequence[Row]) -> list[Row]:
     """Leave out what is alike in load and order parameter: mirror images."""
     kept: list[Row] = []
-    load = _ALIKE * max((row.kL3_alpha for row in rows), default=0.0)
+    load = _ALIKE * max((row.load for row in rows), default=0.0)
     bend = _ALIKE * max((row.abs_kappa_n for row in rows), default=0.0)
     for row in rows:
         if not any(
-            abs(row.kL3_alpha - other.kL3_alpha) <= load
+            abs(row.load - other.load) <= load
             and abs(row.abs_kappa_n - other.abs_kappa_n) <= bend
             for other in kept
         ):

@@ -99,7 +99,7 @@ def _shown(run: Run, steps: Sequence[int] | None) -> list[Row]:
 class _Gallery:
     """Shapes in lines, each with the number of its run, and how they are seen."""
 
-    lines: list[tuple[int, Sequence[Shape]]]
+    lines: list[tuple[int, Sequence[tuple[Row, Shape]]]]
     eye: FloatArray
     half: tuple[float, float]
 
@@ -121,12 +121,16 @@ def _gallery(runs: Sequence[Run], shown: Sequence[Sequence[Row]]) -> _Gallery:
     every = [shape for shapes in films for shape in shapes]
     eye = common_view(every).eye
     lines = [
-        (number, line) for number, shapes in enumerate(films) for line in _lines(shapes)
+        (number, line)
+        for number, (rows, shapes) in enumerate(zip(shown, films, strict=True))
+        for line in _lines(list(zip(rows, shapes, strict=True)))
     ]
     return _Gallery(lines, eye, room(every, eye))
 
 
-def _lines(shapes: Sequence[Shape]) -> list[Sequence[Shape]]:
+def _lines(
+    shapes: Sequence[tuple[Row, Shape]],
+) -> list[Sequence[tuple[Row, Shape]]]:
     """Break the shapes of a run into lines of nearly equal length."""
     count = max(-(-len(shapes) // _PER_LINE), 1)
     length = max(-(-len(shapes) // count), 1)
@@ -139,10 +143,10 @@ def _draw_films(figure: FigureBase, gallery: _Gallery) -> None:
     for (number, line), cells in zip(gallery.lines, axes, strict=True):
         for ax in cells:
             ax.set_axis_off()
-        for ax, shape in zip(cells, line, strict=False):
+        for ax, (row, shape) in zip(cells, line, strict=False):
             count += 1
             draw_film(ax, shape, gallery.eye, gallery.half)
-            title = rf"$\bf{{{count}}}$   $kL^3/\alpha={shape.load:.4g}$"
+            title = rf"$\bf{{{count}}}$   ${row.load_name.tex}={row.load:.5g}$"
             ax.set_title(title, fontsize=7.5, color=style(number)["color"], pad=3)
 
 
@@ -157,9 +161,9 @@ def _number(
     for number, (run, rows) in enumerate(zip(runs, shown, strict=True)):
         for row in rows:
             count += 1
-            inside = window is not None and window[0] <= row.kL3_alpha <= window[1]
+            inside = window is not None and window[0] <= row.load <= window[1]
             ax = axes[1 if inside else 0][0]
-            place = (row.kL3_alpha, row.abs_kappa_n)
+            place = (row.load, row.abs_kappa_n)
             colour = style(number)["color"]
             ax.plot(*place, "o", color=colour, markersize=7, fillstyle="none", zorder=5)
             x, y, align = _beside(ax, row, run, number % 2 == 1)
@@ -190,7 +194,7 @@ def _beside(ax: Axes, row: Row, run: Run, below: bool) -> tuple[float, float, st
         run.rows[i] for i in (max(place - 1, 0), min(place + 1, len(run.rows) - 1))
     )
     climb = (after.abs_kappa_n - before.abs_kappa_n) / np.ptp(ax.get_ylim())
-    way = (after.kL3_alpha - before.kL3_alpha) / np.ptp(ax.get_xlim())
+    way = (after.load - before.load) / np.ptp(ax.get_xlim())
     if abs(climb) <= _STEEP * abs(way):
         return 0, -6 if below else 5, "center"
     right = (climb * way < 0) != below

@@ -54,11 +54,11 @@ def fit_onset(run: Run) -> tuple[Onset, Onset]:
     The rows fitted follow the last planar one of the first leg (or branch), up to 2 % above
     its load. Raises OutputError if there are too few of them for the fit.
     """
-    rows = sorted(run.first_leg, key=lambda row: row.kL3_alpha)
+    rows = sorted(run.first_leg, key=lambda row: row.load)
     bent = next((i for i, row in enumerate(rows) if row.abs_kappa_n > _PLANAR), len(rows))
-    near = rows[bent - 1].kL3_alpha * (1 + _NEAR) if bent else 0.0
-    chosen = [row for row in rows[bent:] if row.kL3_alpha <= near]
-    loads = np.array([row.kL3_alpha for row in chosen])
+    near = rows[bent - 1].load * (1 + _NEAR) if bent else 0.0
+    chosen = [row for row in rows[bent:] if row.load <= near]
+    loads = np.array([row.load for row in chosen])
     found = []
     for _, quantity in _PANELS:
         values = np.array([quantity(row) for row in chosen], dtype=float)
@@ -87,7 +87,7 @@ def onset_figure(runs: Sequence[Run]) -> Figure:
             ax.set_ylabel(label)
             frame(ax)
         column[0].set_xlabel(r"$\varepsilon$ (%)")
-        column[1].set_xlabel(r"$\varepsilon=k/k_{\rm onset}-1$")
+        column[1].set_xlabel(r"$\varepsilon=\,$load$\,/\,$onset$\,-\,1$")
         column[1].legend(loc="upper left", frameon=False, fontsize=8)
     legend_above(figure, axes[0, 0].get_legend_handles_labels()[0])
     return figure
@@ -96,11 +96,12 @@ def onset_figure(runs: Sequence[Run]) -> Figure:
 def _draw_linear(ax: Axes, run: Run, quantity: Quantity, onset: Onset, number: int) -> None:
     law = onset.law
     distance = onset.distance
-    rows = [(row.kL3_alpha / law.onset - 1, quantity(row)) for row in run.first_leg]
+    rows = [(row.load / law.onset - 1, quantity(row)) for row in run.first_leg]
     planar = [pair for pair in rows if -_BELOW * distance[-1] < pair[0] < 0]
     points = np.array([*planar, *zip(distance, onset.values, strict=True)], dtype=float)
     place = _measured(law.onset, law.onset_error)
-    label = rf"{run.label}, fitted onset: $kL^3/\alpha=${place}"
+    name = run.rows[0].load_name.tex
+    label = rf"{run.label}, fitted onset: ${name}=${place}"
     looks = style(number)
     ax.plot(100 * points[:, 0], points[:, 1], **looks, linestyle="none", label=label)
     fine = np.linspace(0, distance[-1], 200)

@@ -13,7 +13,6 @@ from eulerplateau.output.figure import (
     BLACK,
     BLUE,
     GREEN,
-    LOAD,
     ORANGE,
     PURPLE,
     SKY,
@@ -88,7 +87,7 @@ def draw_panels(figure: FigureBase, runs: Sequence[Run], what: str) -> list[list
             if what == "eigenvalue":
                 _scale(ax, runs)
     for column in axes.T:
-        column[-1].set_xlabel(LOAD)
+        column[-1].set_xlabel(runs[0].rows[0].load_name.label)
     if window is not None:
         for ax in axes[:, 1]:
             ax.set_xlim(*window)
@@ -101,7 +100,7 @@ def common_window(runs: Sequence[Run]) -> tuple[float, float] | None:
     ends = [run.saddle for run in runs if run.saddle is not None]
     if not ends:
         return None
-    loads = [row.kL3_alpha for run in runs for row in run.rows]
+    loads = [row.load for run in runs for row in run.rows]
     return enlarged(min(low for low, _ in ends), max(high for _, high in ends), loads)
 
 
@@ -156,7 +155,7 @@ def _draw(ax: Axes, run: Run, quantity: Quantity, number: int) -> None:
     bad = [row for row in run.rows if not row.converged]
     if bad:
         values = [quantity(row) for row in bad]
-        loads = [row.kL3_alpha for row in bad]
+        loads = [row.load for row in bad]
         ax.plot(loads, values, "x", color=looks["color"], markersize=5)  # type: ignore[arg-type]
 
 

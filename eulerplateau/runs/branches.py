@@ -14,9 +14,11 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from eulerplateau import newton
+from eulerplateau.area_film import AreaFilm
 from eulerplateau.continuation import BranchPoint, Settings, first_point
 from eulerplateau.errors import SpecError
 from eulerplateau.exploration import Limits, Visit, explore
+from eulerplateau.load import FILM_LOADS, Load
 from eulerplateau.measures import Measures, measure, waist_path
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.output.files import write_whole
@@ -36,8 +38,9 @@ from eulerplateau.solution import Status
 from eulerplateau.special_points import SpecialPoint
 
 SPECIAL_COLUMNS = (
-    "number", "kind", "kL3_alpha", "kL3_alpha_error", "sigma_hat", "branch", "step",
-    "n_unstable", "eigenvalue", "multiplicity", "transverse", "breaks", "keeps",
+    "number", "kind", "kL3_alpha", "kL3_alpha_error", "sigma_hat", "sigma_hat_error",
+    "branch", "step", "n_unstable", "eigenvalue", "multiplicity", "transverse", "breaks",
+    "keeps",
 )  # fmt: skip
 
 
@@ -50,6 +53,11 @@ class Exploration:
     special: tuple[dict[str, Any], ...]
     seconds: float
 
+    @property
+    def unresolved(self) -> int:
+        """How many points lie where the loop turns too sharply for its mesh."""
+        return sum(not row.converged for row in self.rows)
+
 
 def carry_out(
     spec: RunSpec, path: Path, on_row: Callable[[BranchRow], None] = lambda row: None
@@ -60,7 +68,10 @@ def carry_out(
     """
     started = time.perf_counter()
     mesh = make_mesh(spec)
+    if spec.film.plane:
+        raise SpecError("film.plane", "should be false: branches leave the plane")
     problem = make_problem(mesh, spec.film.model)
+    load = FILM_LOADS[spec.film.model]
     settings = _settings(spec)
     limits = Limits(spec.branches.special_points, spec.branches.unstable_modes)
     summary = describe(spec, mesh)
@@ -78,10 +89,13 @@ def carry_out(
         status = "interrupted"
         write_whole(path / "special_points.csv", _table(special))
         try:
-            for step, visit in enumerate(explore(problem, start, settings, limits)):
-                x = problem.condensed.extend(visit.point.x)
-                row = _row(step, visit, problem, measure(mesh, x, across), x)
-                folder.record(row, mesh, x, _modes(problem, visit.special))
+            for step, visit in enumerate(explore(start, settings, limits)):
+                x, tiled = visit.point.film, visit.point.problem.film
+                if isinstance(tiled, AreaFilm) and tiled.triangles is not mesh.triangles:
+                    mesh = mesh.with_triangles(tiled.triangles)
+                    across = waist_path(mesh)
+                row = _row(step, visit, load, measure(mesh, x, across), x)
+                folder.record(row, mesh, x, _modes(visit.special))
                 rows.append(row)
                 if visit.special is not None and not visit.known:
                     special.append(_special(row, visit.special))
@@ -112,28 +126,28 @@ def _start(
     load = settings.load_range[0]
     nobody = np.zeros(mesh.n_b)
     found = newton.solve(problem, start_shape(spec, mesh), nobody, load)
-    if not found.converged:
+    # Unresolved is no obstacle: the rows say so, and the command's exit code.
+    if found.status not in (Status.CONVERGED, Status.UNRESOLVED):
         raise SpecError(
             "branches.load_min",
             f"no equilibrium found at {load:g} ({found.status.value}): start elsewhere",
         )
     # Upwards from just inside the window, so that the first point does not leave it.
-    return first_point(problem, found.x[mesh.loop], load, settings)
+    return first_point(problem.near(found.x), found.x[mesh.loop], load, settings)
 
 
-def _row(
-    step: int, visit: Visit, problem: Problem, shape: Measures, x: FloatArray
-) -> BranchRow:
-    point = visit.point
+def _row(step: int, visit: Visit, load: Load, shape: Measures, x: FloatArray) -> BranchRow:
+    point, problem = visit.point, visit.point.problem
     spectrum = point.stability
+    found = problem.equilibrium(x, point.model.multipliers, point.load, Status.CONVERGED)
     found = replace(
-        problem.equilibrium(x, point.model.multipliers, point.load, Status.CONVERGED),
+        problem.judged(found),
         iterations=point.corrections,
         n_unstable=spectrum.n_unstable,
         lowest_eigenvalue=spectrum.lowest,
     )
     return BranchRow(
-        **asdict(make_row(step, found, problem, asdict(shape))),
+        **asdict(make_row(step, found, load, asdict(shape))),
         branch=visit.branch,
         origin=visit.origin,
         special=visit.number,
@@ -141,11 +155,11 @@ def _row(
     )
 
 
-def _modes(problem: Problem, special: SpecialPoint | None) -> dict[str, FloatArray]:
+def _modes(special: SpecialPoint | None) -> dict[str, FloatArray]:
     """Return the critical mode, continued into the film as the film follows the loop."""
     if special is None:
         return {}
-    return {"critical_mode": problem.condensed.extend(special.mode)}
+    return {"critical_mode": special.point.displacement(special.mode)}
 
 
 def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:
@@ -153,8 +167,9 @@ def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:
         "number": row.special,
         "kind": special.kind,
         "kL3_alpha": row.kL3_alpha,
-        "kL3_alpha_error": special.load_error,
+        "kL3_alpha_error": row.load_name.springs(special.load_error),
         "sigma_hat": row.sigma_hat,
+        "sigma_hat_error": row.load_name.tension(special.load_error),
         "branch": row.branch,
         "step": row.step,
         "n_unstable": special.n_unstable,

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from eulerplateau.errors import SpecError
+from eulerplateau.load import FILM_LOADS
 from eulerplateau.meshing import MeshSpec
 from eulerplateau.parameters import Settings, read_toml, validate
 
@@ -20,13 +21,20 @@ class StoredMesh(Settings):
 
 
 class FilmSettings(Settings):
-    """Which film spans the loop."""
+    """Which film spans the loop: springs, Dirichlet's energy, or the true area.
 
-    model: Literal["springs"] = "springs"
+    Attributes
+    ----------
+    plane : bool
+        Keeps a film of the true area in its plane, where its loop is all it needs.
+    """
+
+    model: Literal["springs", "dirichlet", "area"] = "springs"
+    plane: bool = False
 
 
 class LoopSettings(Settings):
-    """The loop's bending modulus and length, which turn spring constants into loads.
+    """The loop's bending modulus and length: they turn a film's constant into a load.
 
     Attributes
     ----------
@@ -114,13 +122,14 @@ class SweepSettings(Settings):
     ----------
     loads : list of numbers, ranges {start, stop, step} and refinements
         {onset, nearest, farthest, count}; sorted, each value once.
-    quantity : "kL3_alpha" or "k"
-        Whether `loads` are k L^3 / alpha or spring constants k.
+    quantity : "kL3_alpha" or "k" for springs, "sigma_hat" or "sigma" for other films
+        What `loads` are: k L^3 / alpha or spring constants k, sigma L^3 / alpha or tensions
+        sigma. By default the load, not the constant.
     direction : "up", "down" or "up-down"
     """
 
     loads: tuple[Load, ...] = Field(min_length=1)
-    quantity: Literal["kL3_alpha", "k"] = "kL3_alpha"
+    quantity: Literal["kL3_alpha", "k", "sigma_hat", "sigma"] | None = None
     direction: Literal["up", "down", "up-down"] = "up"
 
     @field_validator("loads")
@@ -168,7 +177,8 @@ class BranchSettings(Settings):
     Attributes
     ----------
     load_min, load_max : float
-        The window of loads k L^3 / alpha; by default that of sweep.loads.
+        The window of loads, k L^3 / alpha of springs and sigma_hat of other films; by
+        default that of sweep.loads.
     special_points : int
         New branches are followed from the first so many folds and bifurcations.
     unstable_modes : int
@@ -202,15 +212,38 @@ class RunSpec(Settings):
     branches: BranchSettings = BranchSettings()
 
     @model_validator(mode="after")
+    def _quantity_is_the_films(self) -> RunSpec:
+        quantity, load = self.sweep.quantity, FILM_LOADS[self.film.model]
+        if quantity not in (None, load.column, load.constant):
+            raise SpecError(
+                "sweep.quantity",
+                f"found {quantity!r}; should be {load.column!r} or {load.constant!r} with "
+                f"film.model = {self.film.model!r}",
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _only_area_stays_in_its_plane(self) -> RunSpec:
+        if self.film.plane and self.film.model != "area":
+            raise SpecError(
+                "film.plane", f"needs film.model = 'area'; found {self.film.model!r}"
+            )
+        if self.film.plane and self.solver.name != "newton":
+            raise SpecError("solver.name", "should be 'newton' with film.plane = true")
+        if self.film.plane and self.output.modes:
+            raise SpecError("output.modes", "should be 0 with film.plane = true")
+        return self
+
+    @model_validator(mode="after")
     def _loads_are_finite(self) -> RunSpec:
         if not np.isfinite(self.loads()).all():
             raise ValueError("sweep.loads times L^3 / alpha overflows: use smaller values")
         return self
 
     def loads(self) -> list[float]:
-        """Return the loads k L^3 / alpha in the order in which they are swept."""
+        """Return the film's loads in the order in which they are swept."""
         scale = 1.0
-        if self.sweep.quantity == "k":
+        if self.sweep.quantity == FILM_LOADS[self.film.model].constant:
             length = self.loop.length
             # Not length**3, which raises where a product overflows to infinity.
             scale = length * length * length / self.loop.alpha

@@ -16,6 +16,7 @@ import numpy as np
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from eulerplateau import __version__
+from eulerplateau.load import FILM_LOADS, Load
 from eulerplateau.measures import measure, waist_path
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.meshing import generate, load_mesh
@@ -62,7 +63,8 @@ def carry_out(
     """
     started = time.perf_counter()
     mesh = make_mesh(spec)
-    problem = make_problem(mesh, spec.film.model)
+    problem = make_problem(mesh, spec.film.model, plane=spec.film.plane)
+    load = FILM_LOADS[spec.film.model]
     rows: list[Row] = []
     neutral: list[int] = []
     summary = describe(spec, mesh)
@@ -75,8 +77,12 @@ def carry_out(
         status = "interrupted"
         try:
             for step, found in enumerate(equilibria(spec, mesh, problem)):
+                if found.triangles is not None:
+                    mesh = mesh.with_triangles(found.triangles)
+                    problem = problem.with_triangles(found.triangles)
+                    path_across = waist_path(mesh)
                 shape = measure(mesh, found.x, path_across)
-                row = make_row(step, found, problem, asdict(shape))
+                row = make_row(step, found, load, asdict(shape))
                 folder.record(row, mesh, found.x, _modes(spec, problem, found))
                 rows.append(row)
                 neutral += [step] if found.n_neutral else []
@@ -121,12 +127,15 @@ def sweep(
 ) -> Iterator[Equilibrium]:
     """Yield one equilibrium per load; x (n_v, 3) is where the first one starts.
 
-    A shape that is not finite is recorded, and not started from.
+    A shape that is not finite is recorded, and not started from. Where a soap film's mesh
+    has been repaired, `triangles` says so, and what follows lies on those.
     """
     multipliers = np.zeros(len(problem.loop_vertices))
     for load in loads:
         found = solver(problem, x, multipliers, load)
         yield found
+        if found.triangles is not None:
+            problem = problem.with_triangles(found.triangles)
         if np.isfinite(found.x).all():
             x, multipliers = found.x, found.multipliers
 
@@ -151,7 +160,7 @@ def describe(spec: RunSpec, mesh: DiskMesh) -> dict[str, Any]:
     """Return what run.json says before anything is computed.
 
     B and E are the loop's and all edges, from which the paper's sigma = 4 sqrt(3) k /
-    (2 - B/E) can be had; sigma_hat in sweep.csv is 2 sqrt(3) k L^3 / alpha.
+    (2 - B/E) can be had; for springs sigma_hat in sweep.csv is 2 sqrt(3) k L^3 / alpha.
     """
     return {
         "spec": spec.model_dump(mode="json"),
@@ -183,12 +192,17 @@ def _totals(rows: Sequence[Row], seconds: float) -> dict[str, Any]:
     }
 
 
-def make_row(step: int, found: Equilibrium, problem: Problem, shape: dict[str, Any]) -> Row:
-    """Return the row of an equilibrium; `shape` holds the fields of its Measures."""
+def make_row(step: int, found: Equilibrium, load: Load, shape: dict[str, Any]) -> Row:
+    """Return the row of an equilibrium; `shape` holds the fields of its Measures.
+
+    `load` says what found.load is. Of a film with a tension, kL3_alpha is the load at which
+    springs on equilateral triangles carry the same.
+    """
     return Row(
         step=step,
-        kL3_alpha=found.load,
-        sigma_hat=problem.film.tension_per_load * found.load,
+        quantity=load.column,
+        kL3_alpha=load.springs(found.load),
+        sigma_hat=load.tension(found.load),
         energy=found.energy,
         film_energy=found.film_energy,
         bending_energy=found.bending_energy,

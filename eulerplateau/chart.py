@@ -1,0 +1,272 @@
+"""A soap film as a function of its loop: the interior eliminated near one shape.
+
+Sliding inside the film costs nothing, so only normal displacements are unknowns there. Near
+a reference shape X with vertex normals n, a loop x_b carries the film
+
+    x_i = X_i + G (x_b - X_b) + n_i u_i,
+
+G the harmonic extension, so that the mesh follows its loop, and u the displacements that
+make the area stationary: n_i . dA/dx_i = 0. That is one trial space, fixed as long as the
+chart is, so the area left over is a smooth function of the loop with the exact gradient and
+second variation (eq. by static condensation, as for quadratic films)
+
+    f = g_b + G^T g_i,      S = T^T H T - (T^T H n) (n^T H n)^-1 (n^T H T),   T = (1, G).
+
+What remains of g_i along the film is a discretisation error. It cannot be removed as well:
+the area does depend, weakly, on where its vertices lie, and falls until triangles vanish.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from eulerplateau.area_film import AreaFilm, Sides
+from eulerplateau.condensation import Condensation, factorise
+from eulerplateau.harmonic import harmonic
+from eulerplateau.mesh import FloatArray
+
+_STEPS = 30
+# Rounding of forces of unit tension along an edge, in eps: some twenty of them are summed.
+_ROUNDING = 20 * float(np.finfo(np.float64).eps)
+# Re-weighting brings a rough film near: until it gains less than this part of the area.
+_NEAR = 1e-3
+_REWEIGHTINGS = 6
+# Cosine of the tilt of normals beyond which a chart gives way to a new one, and up to which
+# a film counts as being where its chart was made.
+_TILT = 0.9
+_NO_TILT = 1 - 1e-10
+# Degrees; and the part of its chart's worst angle that a thinner one may have come to.
+THIN = 12.0
+_THINNED = 0.7
+# Cosine by which a triangle may turn from its chart's: beyond it may have folded over.
+_FOLDED = 0.3
+
+
+@dataclass(frozen=True)
+class Relaxed:
+    """A film at rest on its loop, in a chart.
+
+    Attributes
+    ----------
+    x : (n_v, 3) float
+    heights : (n_i,) float, u
+    sides : its triangles
+    gradient : (n_v, 3) float, of the area
+    """
+
+    chart: Chart
+    x: FloatArray
+    heights: FloatArray
+    sides: Sides
+    gradient: FloatArray
+
+    @property
+    def area(self) -> float:
+        """Area of the film, in units of L^2."""
+        return float(self.sides.areas.sum())
+
+    @cached_property
+    def force(self) -> FloatArray:
+        """Gradient of the area with respect to the loop (n_b, 3)."""
+        return self.chart.carry(self.gradient)
+
+    @cached_property
+    def response(self) -> FloatArray:
+        """Du / dx_b (n_i, 3 n_b)."""
+        return self._condensed[0]
+
+    @property
+    def hessian(self) -> FloatArray:
+        """Second derivative of the area with respect to the loop (3 n_b, 3 n_b)."""
+        return self._condensed[1]
+
+    @property
+    def tilt(self) -> float:
+        """The smallest cosine between the film's normals and its chart's."""
+        return self.chart.tilt(self.sides)
+
+    @property
+    def central(self) -> bool:
+        """Whether the film's normals are its chart's."""
+        return self.tilt > _NO_TILT
+
+    def displacement(self, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
+        film = self.chart.film
+        result = self.chart.follow(moved)
+        heights = self.response @ moved.ravel()
+        result[film.interior] += heights[:, None] * self.chart.normals
+        return result
+
+    @cached_property
+    def _condensed(self) -> tuple[FloatArray, FloatArray]:
+        chart, film = self.chart, self.chart.film
+        n_b, n_i = len(film.loop), len(film.interior)
+        whole = film.hessian(self.sides)
+        carried = np.empty((n_b, 3, n_b, 3))
+        coupling = np.zeros((n_i, n_b, 3))
+        for d in range(3):
+            pull = (whole[:, d::3] @ chart.carrier).reshape(-1, 3, n_b)
+            carried[:, :, :, d] = np.tensordot(chart.carrier, pull, (0, 0))
+            coupling[:, :, d] = np.einsum("ic,icb->ib", chart.normals, pull[film.interior])
+        flat = coupling.reshape(n_i, 3 * n_b)
+        if n_i == 0:
+            return flat, carried.reshape(3 * n_b, 3 * n_b)
+        response: FloatArray = -chart.factorised(self.sides).solve(flat)
+        hessian = carried.reshape(3 * n_b, 3 * n_b) + flat.T @ response
+        return response, 0.5 * (hessian + hessian.T)
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Where the interior of a film is sought.
+
+    Attributes
+    ----------
+    film : the film
+    x : (n_v, 3) float, the reference shape
+    sides : its triangles
+    normals : (n_i, 3) float, the directions along which interior vertices move
+    carrier : (n_v, n_b) float, T: how the mesh follows its loop
+    """
+
+    film: AreaFilm
+    x: FloatArray
+    sides: Sides
+    normals: FloatArray
+    carrier: FloatArray
+    # The last films asked for: a solver comes back to them for force, energy and Hessian.
+    _recent: list[Relaxed] = field(default_factory=list, repr=False, compare=False)
+
+    def follow(self, moved: FloatArray) -> FloatArray:
+        """Return how the mesh (n_v, 3) follows a displacement of the loop (n_b, 3)."""
+        result: FloatArray = self.carrier @ moved
+        return result
+
+    def carry(self, gradient: FloatArray) -> FloatArray:
+        """Return T^T g (n_b, 3): what a gradient (n_v, 3) amounts to on the loop."""
+        result: FloatArray = self.carrier.T @ gradient
+        return result
+
+    def tilt(self, sides: Sides) -> float:
+        """Return the smallest cosine between a film's normals and the chart's."""
+        now = self.film.vertex_normals(sides)[self.film.interior]
+        return float((now * self.normals).sum(axis=1).min(initial=1.0))
+
+    def holds(self, sides: Sides) -> bool:
+        """Return whether a film is so near that neither it nor triangles turned far."""
+        angle = sides.smallest_angle
+        thin = angle < THIN and angle < _THINNED * self.sides.smallest_angle
+        return not thin and self.unfolded(sides) and self.tilt(sides) > _TILT
+
+    def extend(self, x_loop: FloatArray) -> FloatArray:
+        """Return the relaxed film (n_v, 3) on a loop (n_b, 3)."""
+        return self.relax(x_loop).x
+
+    def force(self, x_loop: FloatArray) -> FloatArray:
+        """Return the gradient of the area with respect to the loop (n_b, 3)."""
+        return self.relax(x_loop).force
+
+    def displacement(self, x_loop: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
+        return self.relax(x_loop).displacement(moved)
+
+    def relax(self, x_loop: FloatArray) -> Relaxed:
+        """Return the film of least area on a loop (n_b, 3).
+
+        Raises LinAlgError if there is none in this chart: the film has torn or folded.
+        """
+        loop = self.film.loop
+        for known in self._recent:
+            if np.array_equal(known.x[loop], x_loop):
+                return known
+        heights = self._predicted(x_loop)
+        found = self._newton(x_loop, heights)
+        self._recent[:] = [found, *self._recent[:1]]
+        return found
+
+    def _predicted(self, x_loop: FloatArray) -> FloatArray:
+        if not self._recent:
+            return np.zeros(len(self.film.interior))
+        last = self._recent[0]
+        heights = last.heights
+        if "_condensed" in last.__dict__:
+            moved = x_loop - last.x[self.film.loop]
+            heights = heights + last.response @ moved.ravel()
+        return heights
+
+    def _newton(self, x_loop: FloatArray, heights: FloatArray) -> Relaxed:
+        film, inside = self.film, self.film.interior
+        base = self.x + self.follow(x_loop - self.x[film.loop])
+        base[film.loop] = x_loop
+
+        def at(heights: FloatArray) -> Relaxed:
+            x = base.copy()
+            x[inside] += heights[:, None] * self.normals
+            sides = film.sides(x)
+            if not self.unfolded(sides):
+                raise LinAlgError("a triangle of the film has folded over")
+            return Relaxed(self, x, heights, sides, film.gradient(sides))
+
+        state = at(heights)
+        error = np.inf
+        for _ in range(_STEPS):
+            force = (state.gradient[inside] * self.normals).sum(axis=1)
+            before, error = error, float(np.abs(force).max(initial=0.0))
+            scale = float(np.abs(state.sides.edges).max())
+            stuck = error < 1e-9 * scale and error > 0.25 * before
+            if error <= _ROUNDING * scale or stuck:
+                return state
+            state = self._descend(state, force, at)
+        raise LinAlgError("the film does not come to rest")
+
+    def _descend(
+        self, state: Relaxed, force: FloatArray, at: Callable[[FloatArray], Relaxed]
+    ) -> Relaxed:
+        """Return the film after one Newton step, shortened until the area falls."""
+        step = -self.factorised(state.sides).solve(force[:, None])[:, 0]
+        slope = float(force @ step)
+        for _ in range(20):
+            after = at(state.heights + step)
+            gained = self.film.change(state.x, after.x)
+            if gained <= 0.1 * slope or abs(slope) < 1e-15 * state.area:
+                return after
+            step, slope = 0.5 * step, 0.5 * slope
+        raise LinAlgError("no step makes the film smaller")
+
+    def unfolded(self, sides: Sides) -> bool:
+        """Return whether every triangle of a film has the side up that the chart's has."""
+        turned = (sides.normals * self.sides.normals).sum(axis=1)
+        return bool((sides.areas > 0).all() and (turned > _FOLDED).all())
+
+    def factorised(self, sides: Sides) -> Condensation:
+        """Factorise n^T H n (n_i, n_i); LinAlgError unless positive definite."""
+        film = self.film
+        directions = np.zeros((film.n_v, 3))
+        directions[film.interior] = self.normals
+        matrix = film.normal_hessian(sides, directions)
+        return factorise(matrix[:, film.interior][film.interior], film.pieces)
+
+
+def chart_at(film: AreaFilm, x: FloatArray) -> Chart:
+    """Return the chart at a shape (n_v, 3), which is brought near to rest first.
+
+    Re-weighting: the film that is harmonic with the cotangent weights of the last one has
+    no more area (Pinkall and Polthier 1993).
+    """
+    for _ in range(_REWEIGHTINGS):
+        after = x.copy()
+        after[film.interior] = harmonic(film, film.sides(x), x[film.loop])
+        if film.change(x, after) > -_NEAR * film.sides(x).areas.sum():
+            break
+        x = after
+    sides = film.sides(x)
+    carrier = np.zeros((film.n_v, len(film.loop)))
+    carrier[film.loop] = np.eye(len(film.loop))
+    carrier[film.interior] = harmonic(film, sides, np.eye(len(film.loop)))
+    return Chart(film, x, sides, film.vertex_normals(sides)[film.interior], carrier)

@@ -1,0 +1,131 @@
+"""What scripts/error_vs_time runs in a process of its own: our solvers on one point."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from error_scenes import Scene, gyration, lattice, prolong, shape_error
+from error_thresholds import disk_threshold
+
+from eulerplateau.mesh import DiskMesh, FloatArray
+from eulerplateau.problem import Problem
+from eulerplateau.solution import Equilibrium, Status
+
+REPEATS = 5
+# Seconds after which a point is not repeated again.
+ENOUGH = 20.0
+
+
+def repeated(meshes: list[DiskMesh], scene: Scene, solver: str) -> Iterator[dict[str, Any]]:
+    """Yield what each repeat of a point cost and came to."""
+    # Loads the compiled kernels and whatever is imported late.
+    solved([lattice(3, 1.0)], replace(scene, load=1.0, threshold=None), solver)
+    start_up, began = time.process_time(), time.perf_counter()
+    for repeat in range(REPEATS):
+        cpu = time.process_time()
+        found, set_up, solve = solved(meshes, scene, solver)
+        cpu = time.process_time() - cpu
+        yield {
+            "repeat": repeat,
+            "set_up": set_up,
+            "solve": solve,
+            "cpu": cpu,
+            "start_up": start_up,
+            "memory": peak_memory(),
+            **what(scene, meshes[-1], found),
+        }
+        if time.perf_counter() - began > ENOUGH:
+            return
+
+
+def solved(
+    meshes: list[DiskMesh], scene: Scene, solver: str
+) -> tuple[Equilibrium | tuple[float, int], float, float]:
+    """Return what is found on the last mesh, and the wall seconds of set-up and solving.
+
+    Carrying the shape from mesh to mesh counts as solving.
+    """
+    from eulerplateau import conjugate_gradient, newton
+    from eulerplateau.problem import make_problem
+
+    solve = {"newton": newton.solve, "cg": conjugate_gradient.solve}[solver]
+    x, found, steps = scene.start(meshes[0]), None, 0
+    set_up, started = 0.0, time.perf_counter()
+    for number, mesh in enumerate(meshes):
+        if found is not None:
+            before = meshes[number - 1]
+            x = prolong(before, found.x[before.loop], mesh, scene.in_plane)
+        making = time.perf_counter()
+        problem = make_problem(mesh, scene.film, plane=scene.in_plane)
+        if scene.film != "area":
+            _ = problem.condensed
+        set_up += time.perf_counter() - making
+        if scene.threshold is not None:
+            threshold = disk_threshold(problem, mesh, scene.transverse)
+            return threshold, set_up, time.perf_counter() - started - set_up
+        if scene.saddle:
+            found = saddle_in_plane(problem, x, scene.load)
+        else:
+            found = solve(problem, x, np.zeros(mesh.n_b), scene.load)
+        steps += found.iterations
+    assert found is not None
+    total = time.perf_counter() - started
+    return replace(found, iterations=steps), set_up, total - set_up
+
+
+def saddle_in_plane(problem: Problem, x: FloatArray, load: float) -> Equilibrium:
+    """Return the equilibrium next to x (n_v, 3) in the plane, whatever its index."""
+    from eulerplateau.plane_energy import PlaneEnergy
+    from eulerplateau.plane_newton import settle_in_plane
+
+    x, loop = x.copy(), problem.loop_vertices
+    flat = settle_in_plane(PlaneEnergy(problem.loop, load), x[loop, :2], 100)
+    if flat is None:
+        nothing = np.zeros(len(loop))
+        return problem.equilibrium(x, nothing, load, Status.STALLED)
+    x[loop, :2] = flat.x
+    found = problem.equilibrium(x, flat.multipliers, load, Status.CONVERGED)
+    return replace(found, iterations=flat.iterations)
+
+
+def what(
+    scene: Scene, mesh: DiskMesh, found: Equilibrium | tuple[float, int]
+) -> dict[str, Any]:
+    """Return the part of a record that says what was found, not what it cost."""
+    if isinstance(found, tuple):
+        value, loads = found
+        return {
+            "value": value,
+            "iterations": loads,
+            "gyration": math.nan,
+            "shape_error": math.nan,
+            "status": "converged",
+        }
+    loop = found.x[mesh.loop]
+    return {
+        "value": found.energy,
+        "iterations": found.iterations,
+        "gyration": gyration(mesh, loop),
+        "shape_error": distance(scene, mesh, loop),
+        "status": found.status.value,
+    }
+
+
+def distance(scene: Scene, mesh: DiskMesh, loop: FloatArray) -> float:
+    """Return the error of the shape (n_b, 3) where it is known exactly, else nan."""
+    return math.nan if scene.exact is None else shape_error(mesh, loop, scene.exact)
+
+
+def peak_memory() -> float:
+    """Return this process's peak memory in MiB; a child's ru_maxrss may be its parent's."""
+    status = Path("/proc/self/status")
+    if not status.exists():
+        return math.nan
+    line = next(row for row in status.read_text().splitlines() if row.startswith("VmHWM"))
+    return int(line.split()[1]) / 1024

@@ -1,0 +1,233 @@
+"""Error against run time: films, solvers and meshes, and Surface Evolver beside them.
+
+Every scene (error_scenes.py) is computed on meshes of growing fineness by every solver that
+can, from the same start. A point is repeated in one process, whose peak memory it is;
+making the problem (set-up, with the film's condensation) and solving it are timed apart.
+Not counted for ours: the interpreter's start, imports and compiled kernels (start_up), and
+making the mesh. Evolver is charged for its whole process, reading its datafile included,
+but not for writing it nor for carrying a shape from mesh to mesh.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import click
+import numpy as np
+from error_measure import ENOUGH, REPEATS, distance, repeated
+from error_records import COARSE_TO_FINE, Measurement, with_errors, write_csv
+from error_report import draw, markdown
+from error_scenes import SCENES, Scene, gyration, prolong
+from evolver import EvolverRun, find_evolver, relax, run_evolver
+from evolver_files import film_datafile, gradient_script, start_script, string_datafile
+
+from eulerplateau.mesh import DiskMesh
+
+# Seconds beyond ENOUGH after which a solver is given up, on finer meshes too.
+TOO_SLOW = 60.0
+# Loop edges of the meshes, each twice as fine as the one before.
+LEVELS = {"uniform": 4, "graded": 5, "lattice": 4}
+COARSEST = 36
+# Without its interior a film's loop of 36 edges leads Evolver astray.
+COARSEST_IN_PLANE = 72
+
+
+@click.group(invoke_without_command=True)
+@click.option("--scene", "names", multiple=True, type=click.Choice(list(SCENES)))
+@click.option("--out", default="docs", type=click.Path(path_type=Path, file_okay=False))
+@click.pass_context
+def main(context: click.Context, names: tuple[str, ...], out: Path) -> None:
+    """Measure all scenes, or those named; write error_vs_time.csv and .png to OUT."""
+    if context.invoked_subcommand is not None:
+        return
+    out.mkdir(parents=True, exist_ok=True)
+    found: list[Measurement] = []
+    with TemporaryDirectory() as folder:
+        for name in names or SCENES:
+            found += with_errors(list(measure_scene(SCENES[name], Path(folder))))
+            write_csv(out / "error_vs_time.csv", found)
+    draw(out / "error_vs_time.png", found)
+    click.echo(markdown(found))
+
+
+@main.command()
+@click.argument("meshes", nargs=-1, type=click.Path(path_type=Path, exists=True))
+@click.option("--scene", required=True, type=click.Choice(list(SCENES)))
+@click.option("--solver", required=True, type=click.Choice(["newton", "cg"]))
+def point(meshes: tuple[Path, ...], scene: str, solver: str) -> None:
+    """Measure one point in this process and print its repeats as JSON.
+
+    Solved on the last of the meshes, coming from the ones before it.
+    """
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(1, user_api="blas"):
+        sequence = [read_mesh(path) for path in meshes]
+        for record in repeated(sequence, SCENES[scene], solver):
+            click.echo(json.dumps(record))
+
+
+def kinds(scene: Scene) -> tuple[str, ...]:
+    """Return the kinds of meshes that make a difference in a scene."""
+    if scene.film == "springs":  # they have a limit on nested lattices only
+        return ("lattice",)
+    return ("graded",) if scene.in_plane else ("uniform", "graded")
+
+
+def solvers(scene: Scene) -> tuple[str, ...]:
+    """Return the solvers of ours that can do a scene; cg only films of fixed weights."""
+    if scene.threshold is not None:
+        return ("newton",)
+    from_coarse = f"newton{COARSE_TO_FINE}"
+    return (
+        ("newton", from_coarse) if scene.film == "area" else ("newton", from_coarse, "cg")
+    )
+
+
+def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
+    """Yield every repeat of every point of a scene."""
+    for kind in kinds(scene):
+        coarsest = COARSEST_IN_PLANE if scene.in_plane else COARSEST
+        levels = 4 if scene.in_plane else LEVELS[kind]
+        meshes = [scene.mesh(kind, coarsest * 2**level) for level in range(levels)]
+        paths = [folder / f"{number}.npz" for number in range(levels)]
+        for path, mesh in zip(paths, meshes, strict=True):
+            write_mesh(path, mesh)
+        for solver in solvers(scene):
+            for last, mesh in enumerate(meshes):
+                first = 0 if solver.endswith(COARSE_TO_FINE) else last
+                records = run_point(paths[first : last + 1], scene, solver)
+                yield from (as_measurement(scene, solver, kind, mesh, r) for r in records)
+                summarise(scene, solver, kind, mesh, records)
+                if not records or records[-1]["cpu"] > ENOUGH:
+                    break
+        with_evolver = scene.film == "area" and scene.threshold is None
+        if with_evolver and find_evolver() is not None:
+            yield from measure_evolver(scene, kind, meshes)
+
+
+def run_point(meshes: list[Path], scene: Scene, solver: str) -> list[dict[str, Any]]:
+    """Run one point in a process of its own; nothing if it takes too long."""
+    command = [sys.executable, __file__, "point", *map(str, meshes)]
+    command += ["--scene", scene.name, "--solver", solver.removesuffix(COARSE_TO_FINE)]
+    try:
+        done = subprocess.run(
+            command, stdout=subprocess.PIPE, check=True, timeout=ENOUGH + TOO_SLOW
+        )
+    except subprocess.TimeoutExpired as late:
+        printed = late.stdout or b""
+    else:
+        printed = done.stdout
+    return [json.loads(line) for line in printed.splitlines()]
+
+
+def measure_evolver(
+    scene: Scene, kind: str, meshes: list[DiskMesh]
+) -> Iterator[Measurement]:
+    """Yield Evolver's repeats, directly on each mesh and coarse to fine."""
+    describe = string_datafile if scene.in_plane else film_datafile
+    for name in ("evolver", f"evolver{COARSE_TO_FINE}"):
+        for last, mesh in enumerate(meshes):
+            sequence = meshes[: last + 1] if name != "evolver" else [mesh]
+            reading = 0.0
+            for level in sequence:
+                data = describe(level, scene.start(level), scene.load)
+                reading += run_evolver(data, start_script(scene.in_plane)).wall
+            records = []
+            for repeat in range(REPEATS):
+                records.append(evolver_record(scene, sequence, repeat, reading))
+                if sum(record["cpu"] for record in records) > ENOUGH:
+                    break
+            yield from (as_measurement(scene, name, kind, mesh, r) for r in records)
+            summarise(scene, name, kind, mesh, records)
+    if not scene.in_plane and kind == "uniform":
+        mesh = meshes[1]
+        data = film_datafile(mesh, scene.start(mesh), scene.load)
+        run = run_evolver(data, gradient_script(TOO_SLOW), seconds=2 * TOO_SLOW)
+        record = as_record(scene, mesh, run, 0, 0.0)
+        yield as_measurement(scene, "evolver, gradients", kind, mesh, record)
+        summarise(scene, "evolver, gradients", kind, mesh, [record])
+
+
+def evolver_record(
+    scene: Scene, sequence: list[DiskMesh], repeat: int, reading: float
+) -> dict[str, Any]:
+    """Run Evolver once; its memory is asked for in the first repeat only."""
+    x = scene.start(sequence[0])
+    try:
+        run = relax(
+            sequence, x, scene.load, prolong, in_plane=scene.in_plane, weigh=repeat == 0
+        )
+    except ValueError:
+        nan, nowhere = math.nan, np.full((sequence[-1].n_b, 3), math.nan)
+        run = EvolverRun(nan, nowhere, 0, nan, nan, nan, converged=False)
+    return as_record(scene, sequence[-1], run, repeat, reading)
+
+
+def as_record(
+    scene: Scene, mesh: DiskMesh, run: EvolverRun, repeat: int, reading: float
+) -> dict[str, Any]:
+    """Return Evolver's run as a record; `reading`: seconds of starting and reading."""
+    return {
+        "repeat": repeat,
+        "set_up": reading,
+        "solve": run.wall - reading,
+        "cpu": run.cpu,
+        "start_up": 0.0,
+        "iterations": run.steps,
+        "memory": run.memory,
+        "value": run.energy,
+        "gyration": gyration(mesh, run.loop),
+        "shape_error": distance(scene, mesh, run.loop) if run.converged else math.nan,
+        "status": "converged" if run.converged else "failed",
+    }
+
+
+def as_measurement(
+    scene: Scene, solver: str, kind: str, mesh: DiskMesh, record: dict[str, Any]
+) -> Measurement:
+    """Return a record with the point it belongs to; its error is not known yet."""
+    return Measurement(
+        scene=scene.name,
+        film=scene.film,
+        solver=solver,
+        mesh=kind,
+        loop_edges=mesh.n_b,
+        vertices=mesh.n_v,
+        error=math.nan,
+        **record,
+    )
+
+
+def summarise(
+    scene: Scene, solver: str, kind: str, mesh: DiskMesh, records: list[dict[str, Any]]
+) -> None:
+    """Tell what a point came to, on standard error."""
+    cost = f"{np.median([r['cpu'] for r in records]):.4f} s" if records else "too slow"
+    state = records[-1]["status"] if records else "given up"
+    place = f"{scene.name}: {solver}, {kind}, {mesh.n_b} edges, {mesh.n_v} vertices"
+    click.echo(f"{place}: {cost}, {state}", err=True)
+
+
+def write_mesh(path: Path, mesh: DiskMesh) -> None:
+    """Hand a mesh to another process, to the last bit."""
+    np.savez(
+        path, x=mesh.x, triangles=mesh.triangles, loop=mesh.loop, rest=mesh.rest_lengths
+    )
+
+
+def read_mesh(path: Path) -> DiskMesh:
+    """Return the mesh that `write_mesh` wrote."""
+    data = np.load(path)
+    return DiskMesh(data["x"], data["triangles"], data["loop"], data["rest"], 1.0)
+
+
+if __name__ == "__main__":
+    main()

@@ -25,6 +25,9 @@ from eulerplateau.plane_film import PlaneFilm, plane_film
 from eulerplateau.repair import repaired
 from eulerplateau.solution import LARGEST_LOAD, RESOLVED_TURNING, Equilibrium, Status
 
+# Relative error of lengths up to which what a solver stopped at is a loop at all.
+_CLOSED = 1e-3
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -189,7 +192,8 @@ class Problem:
         solution passes here before anybody sees it, whatever method found it.
         """
         soap = not isinstance(self.film, Film) and found.status is not Status.NOT_FINITE
-        if soap and self.loop.strands_meet(found.x[self.loop_vertices]):
+        loop = soap and found.length_error < _CLOSED
+        if loop and self.loop.strands_meet(found.x[self.loop_vertices]):
             return replace(found, status=Status.PINCHED)
         if not found.converged:
             return found

@@ -93,7 +93,8 @@ def _slid(film: AreaFilm, x: FloatArray) -> FloatArray:
     total = film.gather(np.repeat(middle[:, None], 3, axis=1))
     weight = film.gather(np.broadcast_to(sides.areas[:, None, None], (len(middle), 3, 3)))
     normals = film.vertex_normals(sides)
-    step = total / weight - x
+    # Where all triangles around a vertex have collapsed, there is nowhere to slide to.
+    step = np.divide(total, weight, out=x.copy(), where=weight > 0) - x
     step -= (step * normals).sum(axis=1)[:, None] * normals
     step[film.loop] = 0.0
     for _ in range(30):

@@ -10,6 +10,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.area_energy import AreaEnergy
 from eulerplateau.area_film import AreaFilm
+from eulerplateau.condensation import condense
 from eulerplateau.condensed import loop_energy
 from eulerplateau.descent import Descent, judged, record, stability_of
 from eulerplateau.inextensible import close_with_lengths
@@ -21,6 +22,7 @@ from eulerplateau.problem import Problem
 from eulerplateau.repair import carried
 from eulerplateau.solution import Equilibrium, Status
 from eulerplateau.stability import Stability
+from eulerplateau.tangent import LoopEnergy
 
 # A soap film is sought near the last shape at most so many times in one solve.
 _CHARTS = 60
@@ -35,15 +37,54 @@ def search_soap(
     max_iterations: int,
     observe: Callable[[FloatArray], None],
 ) -> Equilibrium | None:
-    """Return what a soap film comes to; None if no loop, or no film on it, is near x.
+    """Return what a soap film comes to; None if no loop, or no film on it, is near x."""
+    x_loop = close_with_lengths(problem.loop, x[problem.loop_vertices])
+    if x_loop is None:
+        return None
+    found = _charted(problem, x, x_loop, load, max_iterations, observe)
+    if found is not None:
+        return found
+    smooth = _unfolded(problem, x_loop, load, max_iterations)
+    if smooth is None:
+        return None
+    smooth_loop = smooth[problem.loop_vertices]
+    return _charted(problem, smooth, smooth_loop, load, max_iterations, observe)
+
+
+def _unfolded(
+    problem: Problem, x_loop: FloatArray, load: float, max_iterations: int
+) -> FloatArray | None:
+    """Return the shape (n_v, 3) of least Dirichlet energy that a crumpled loop leads to.
+
+    That film, tied to the mesh as it was given, can be spanned across any loop.
+    """
+    film = problem.film
+    assert isinstance(film, AreaFilm)
+    laplacian = film.cotangent_laplacian(film.sides(film.rest))
+    try:
+        condensed = condense(laplacian, film.loop, film.interior)
+    except LinAlgError:
+        return None
+    loop = problem.loop
+    energy = LoopEnergy(loop, 2 * loop.bending_matrix, load * condensed.stiffness)
+    state, _ = Descent(energy, max_iterations).run(x_loop)
+    return condensed.extend(state.model.x)
+
+
+def _charted(
+    problem: Problem,
+    x: FloatArray,
+    x_loop: FloatArray,
+    load: float,
+    max_iterations: int,
+    observe: Callable[[FloatArray], None],
+) -> Equilibrium | None:
+    """Return what a soap film near x (n_v, 3) on a loop comes to; None if there is none.
 
     Chart after chart, until the film is at rest in the one that is made at its own shape.
     """
     first = film = problem.film
     assert isinstance(film, AreaFilm)
-    x_loop = close_with_lengths(problem.loop, x[problem.loop_vertices])
-    if x_loop is None:
-        return None
     spent, found = 0, None
     for _ in range(_CHARTS):
         try:

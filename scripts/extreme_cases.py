@@ -22,7 +22,7 @@ from eulerplateau.solution import Equilibrium, Status
 from eulerplateau.tangent import tangent_model
 
 # A film that the cases are to be tried on too is one more word here.
-FILMS = ("springs", "dirichlet")
+FILMS = ("springs", "dirichlet", "area")
 Spoiler = Callable[["Disk", float], "Disk"]
 SOLVERS = {"newton": newton.solve, "cg": conjugate_gradient.solve}
 
@@ -84,6 +84,8 @@ def run(case: Disk, film: str, load: float, solver: str = "newton") -> Outcome:
     found = SOLVERS[solver](problem, start, np.zeros(mesh.n_b), load)
     if not np.isfinite([found.energy, *found.x.ravel()]).all():
         return Outcome(found=found)
+    if found.triangles is not None:
+        mesh, problem = (on.with_triangles(found.triangles) for on in (mesh, problem))
     shape = asdict(measure(mesh, found.x, waist_path(mesh)))
     outcome = Outcome(None, found, shape)
     if not outcome.balanced:

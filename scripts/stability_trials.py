@@ -16,7 +16,8 @@ from eulerplateau.solution import Status
 
 # Flat and long (springs: twisted) on the hexagon stretched to twice its length; below the
 # disk's first threshold, where there is one minimum only.
-TENSION, ONE_MINIMUM = 2600.0, 1000.0
+# A film of true area has two flat lobes there.
+TENSION, ONE_MINIMUM = {"springs": 2600.0, "dirichlet": 2600.0, "area": 1700.0}, 1000.0
 LOADS = (0.0, 1e-12, 1e-6, 1e5, 1e6, 1e8, 1e12)
 MODULI = (1e-3, 1e-6, 1e-9)
 # Finer meshes than this are not tried as references.
@@ -65,7 +66,7 @@ class Row:
 def trials(film: str) -> Iterator[Trial]:
     """Yield all trials of a film."""
     base = hexagon(2.0)
-    own = cases.own_load(film, TENSION)
+    own = cases.own_load(film, TENSION[film])
     yield from _loads(film, base)
     for factor in (5.0, 20.0, 50.0):
         yield _twinned("stretched polygon", f"{factor:g}:1", film, own, hexagon(factor))
@@ -129,7 +130,7 @@ def _loads(film: str, base: Disk) -> Iterator[Trial]:
         against = BARE if load < 1 else FINER
         yield Trial("load", f"{load:g}", film, load, base, against)
     for alpha in MODULI:
-        load = cases.own_load(film, TENSION) / alpha
+        load = cases.own_load(film, TENSION[film]) / alpha
         yield Trial("alpha to 0", f"{alpha:g}", film, load, base, FINER)
 
 
@@ -197,11 +198,18 @@ def _energy_error(trial: Trial, outcome: Outcome, reference: Outcome) -> float:
 
 
 def _shape_error(outcome: Outcome, reference: Outcome) -> float:
-    """Return the largest difference of the measures, relative where they are above 1."""
+    """Return the largest difference of the measures, relative where they are above 1.
+
+    All but the smallest angle, which is the mesh's and not the shape's.
+    """
     one, two = outcome.measures, reference.measures
     if one is None or two is None or not outcome.balanced:
         return np.nan
-    return max(abs(one[key] - two[key]) / max(1.0, abs(two[key])) for key in two)
+    return max(
+        abs(one[key] - two[key]) / max(1.0, abs(two[key]))
+        for key in two
+        if key != "min_angle"
+    )
 
 
 def _eigenvalue_error(trial: Trial, outcome: Outcome, reference: Outcome) -> float:

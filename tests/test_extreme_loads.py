@@ -5,7 +5,7 @@ from __future__ import annotations
 import equilibria
 import numpy as np
 import pytest
-from extremes import cases, oval
+from extremes import FIXED, cases, oval
 
 from eulerplateau.inextensible import close_with_lengths
 from eulerplateau.loop import Loop
@@ -26,7 +26,7 @@ def solved(film: str, load: float, solver: str = "newton", rings: int = 6) -> Eq
 
 
 @pytest.mark.parametrize("load", TINY)
-@pytest.mark.parametrize("film", cases.FILMS)
+@pytest.mark.parametrize("film", FIXED)
 def test_load_next_to_nothing_adds_its_film_to_the_bare_loop_to_1e_11(
     film: str, load: float
 ) -> None:
@@ -40,7 +40,7 @@ def test_load_next_to_nothing_adds_its_film_to_the_bare_loop_to_1e_11(
 
 @pytest.mark.parametrize("solver", cases.SOLVERS)
 @pytest.mark.parametrize("load", TINY)
-@pytest.mark.parametrize("film", cases.FILMS)
+@pytest.mark.parametrize("film", FIXED)
 def test_film_too_soft_to_be_felt_is_flat_and_at_rest_all_the_same(
     film: str, load: float, solver: str
 ) -> None:
@@ -53,7 +53,7 @@ def test_film_too_soft_to_be_felt_is_flat_and_at_rest_all_the_same(
 
 @pytest.mark.parametrize("solver", cases.SOLVERS)
 @pytest.mark.parametrize("load", HUGE)
-@pytest.mark.parametrize("film", cases.FILMS)
+@pytest.mark.parametrize("film", FIXED)
 def test_load_beyond_the_mesh_ends_and_is_never_called_converged(
     film: str, load: float, solver: str
 ) -> None:
@@ -74,7 +74,7 @@ def test_load_beyond_the_mesh_ends_and_is_never_called_converged(
 
 
 @pytest.mark.parametrize("load", HUGE)
-@pytest.mark.parametrize("film", cases.FILMS)
+@pytest.mark.parametrize("film", FIXED)
 def test_unresolved_equilibria_balance_all_the_same(film: str, load: float) -> None:
     """The status is about the mesh, not about the residual."""
     found = solved(film, load)
@@ -108,7 +108,7 @@ def test_bending_modulus_to_zero_at_fixed_spring_constant_is_the_load_to_infinit
     assert status is (Status.CONVERGED if alpha == 1.0 else Status.UNRESOLVED)
 
 
-@pytest.mark.parametrize("film", cases.FILMS)
+@pytest.mark.parametrize("film", FIXED)
 def test_unresolved_loop_is_resolved_by_a_finer_mesh(film: str) -> None:
     load = cases.own_load(film, 8000.0)
     coarse, fine, finest = (solved(film, load, rings=rings) for rings in (5, 10, 20))

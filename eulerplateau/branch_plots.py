@@ -61,6 +61,8 @@ _LEADER: dict[str, Any] = {
 # Special points closer than this part of the loads shown share a label, and labels are
 # kept this part of them apart.
 _TOGETHER, _APART = 5e-3, 0.05
+# Part of a panel's whole range below which the stable branches' own is rounding.
+_FLAT = 1e-3
 # A planar film's twist jumps by half turns where its rim passes through itself.
 _JUMP = 90.0
 
@@ -183,14 +185,23 @@ def _window(branches: Sequence[Branch]) -> tuple[float, float] | None:
 
 
 def _fit(ax: Axes, whole: bool) -> None:
-    """Choose the range from all curves, or from the solid ones, at the loads shown."""
+    """Choose the range from all curves, or from the solid ones, at the loads shown.
+
+    Solid ones that all lie at zero say nothing about a range.
+    """
     low, high = ax.get_xlim()
     solid = [line for line in ax.lines if line.get_linestyle() == _STABLE["linestyle"]]
-    values = [np.empty(0)]
-    for line in ax.lines if whole or not solid else solid:
-        x, y = np.asarray(line.get_data())
-        values.append(y[(low <= x) & (x <= high) & np.isfinite(y)])
-    shown = np.concatenate(values)
+
+    def values(lines: Iterable[Any]) -> NDArray[np.float64]:
+        found = [np.empty(0)]
+        for line in lines:
+            x, y = np.asarray(line.get_data())
+            found.append(y[(low <= x) & (x <= high) & np.isfinite(y)])
+        return np.concatenate(found)
+
+    shown, stable = values(ax.lines), values(solid)
+    if not whole and len(stable) and np.ptp(stable) > _FLAT * np.ptp(shown):
+        shown = stable
     if len(shown):
         margin = 0.08 * np.ptp(shown) or 1.0
         ax.set_ylim(shown.min() - margin, shown.max() + margin)

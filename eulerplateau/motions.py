@@ -9,8 +9,9 @@ from eulerplateau.loop import Loop, backward_differences, differences
 from eulerplateau.mesh import FloatArray
 
 RIGID_MOTIONS = 6
-# Of a circle, sliding is a rotation: what is left of it has at least this size, of 1.
-_SLIDES = 1e-3
+# Of a circle, sliding is a rotation. What is left of it, of 1, is a motion of its own beyond
+# this; nearer to a circle it cannot be told from the shape's modes, and stays among them.
+_SLIDES = 0.05
 
 # Row k is the matrix G_k with axis_k x r = r G_k.
 TURNS = np.array(

@@ -126,7 +126,6 @@ class Problem:
     def residual(self, x: FloatArray, multipliers: FloatArray, load: float) -> float:
         """Return the imbalance of forces over the largest force, both as max norms.
 
-        What would slide a soap film's loop along itself does not count (motions.sliding).
         Infinite where a soap film's triangles are so degenerate that they bear no film.
         """
         try:
@@ -135,12 +134,21 @@ class Problem:
             return np.inf
         forces = self.bending_energy(x)[1], film, self.tension_force(x, multipliers)
         scale = max(float(np.abs(f).max()) for f in forces)
-        total = forces[0] + forces[1] + forces[2]
-        if not isinstance(self.film, Film):
-            on_loop = self.loop_vertices
-            slide = sliding(self.loop, x[on_loop])
-            total[on_loop] = without(slide, self.loop, total[on_loop])
+        total = self.unslid(x, forces[0] + forces[1] + forces[2])
         return float(np.abs(total).max()) / scale if scale != 0 else 0.0
+
+    def unslid(self, x: FloatArray, forces: FloatArray) -> FloatArray:
+        """Return forces (n_v, 3) without what would slide a soap film's loop along itself.
+
+        See motions.sliding; films of fixed weights are tied to their rest mesh.
+        """
+        if isinstance(self.film, Film):
+            return forces
+        on_loop = self.loop_vertices
+        slide = sliding(self.loop, x[on_loop])
+        rest = forces.copy()
+        rest[on_loop] = without(slide, self.loop, forces[on_loop])
+        return rest
 
     def length_error(self, x: FloatArray) -> float:
         """Return max |l_v / s_v - 1| over the loop's edges."""
@@ -184,6 +192,11 @@ class Problem:
             status=Status.NOT_FINITE,
         )
 
+    def pinched(self, x: FloatArray) -> bool:
+        """Whether a soap film (n_v, 3) has run out of width: strands of its loop meet."""
+        soap = not isinstance(self.film, Film)
+        return soap and self.loop.strands_meet(x[self.loop_vertices])
+
     def judged(self, found: Equilibrium) -> Equilibrium:
         """Return `found`; UNRESOLVED if it converged to a loop that its mesh cannot carry.
 
@@ -191,9 +204,8 @@ class Problem:
         is left to span, and what a solver makes of the mesh there means nothing. Every
         solution passes here before anybody sees it, whatever method found it.
         """
-        soap = not isinstance(self.film, Film) and found.status is not Status.NOT_FINITE
-        loop = soap and found.length_error < _CLOSED
-        if loop and self.loop.strands_meet(found.x[self.loop_vertices]):
+        loop = found.status is not Status.NOT_FINITE and found.length_error < _CLOSED
+        if loop and self.pinched(found.x):
             return replace(found, status=Status.PINCHED)
         if not found.converged:
             return found

@@ -41,8 +41,6 @@ def branches(
     their loads located by an eigenvalue's crossing), shapes/*.vtp with the critical
     modes, branches.pvd (for ParaView), run.json, branches.png.
     """
-    from eulerplateau.solution import Status
-
     run = load_single(spec, settings)
     folder = out or spec.with_name(f"{spec.stem}-branches")
     result = _explore(run, folder, quiet)
@@ -56,11 +54,11 @@ def branches(
         _report(result, drawn)
     if not result.unresolved:
         return 0
-    click.echo(
-        f"eulerplateau: {folder}: {result.unresolved} of {len(result.rows)} points "
-        f"{Status.UNRESOLVED.value}: {Status.UNRESOLVED.advice}",
-        err=True,
-    )
+    statuses = [row.status for row in result.rows if not row.converged]
+    for status in dict.fromkeys(statuses):
+        share = f"{statuses.count(status)} of {len(result.rows)} points"
+        line = f"eulerplateau: {folder}: {share} {status.value}: {status.advice}"
+        click.echo(line, err=True)
     return NOT_CONVERGED_EXIT_CODE
 
 

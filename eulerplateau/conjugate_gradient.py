@@ -24,6 +24,7 @@ from scipy.optimize import minimize
 
 from eulerplateau import kernels
 from eulerplateau.area_film import AreaFilm
+from eulerplateau.kick import smooth_kick
 from eulerplateau.mesh import FloatArray
 from eulerplateau.plane_film import PlaneFilm
 from eulerplateau.problem import Problem
@@ -39,7 +40,6 @@ _FINAL_TOLERANCE = 0.3 * RESIDUAL_TOLERANCE
 _ITERATIONS_PER_BASE = 2000
 # Kicks before the load is given up as lying at a transition.
 _KICKS = 5
-_KICK_SIZE = 1e-3
 _SAME_ENERGY = 1e-8
 # Forces inside a film at rest over the largest of its forces on the loop.
 _FILM_BALANCE = 1e-3
@@ -77,7 +77,7 @@ def solve(
     film = problem.film
     # Across the loop's plane, or along it where there is nothing else.
     axis = 0 if isinstance(film, PlaneFilm) else 2
-    start = film.flattened(x) if isinstance(film, PlaneFilm) else x
+    start = film.laid(x) if isinstance(film, PlaneFilm) else x
     best = _descend(problem, start, multipliers, load, max_iterations, observe)
     spent = best.iterations
     confirmed = False
@@ -103,24 +103,6 @@ def solve(
     best = _with_mesh(problem, start, best)
     seconds = time.perf_counter() - started
     return problem.judged(replace(best, iterations=spent, seconds=seconds))
-
-
-def smooth_kick(
-    x_loop: FloatArray, x: FloatArray, rng: np.random.Generator, axis: int
-) -> FloatArray:
-    """Return a smooth random displacement (n_v, 3) of 1e-3 L along an axis of the loop.
-
-    Axis 2 is across its mean plane, 0 and 1 are its long and short one. A random polynomial
-    of degree 2 to 4 in the in-plane coordinates (across the plane lower degrees are rigid
-    motions): noise from vertex to vertex would be smoothed away by the bending stiffness
-    before it reached the modes that become unstable.
-    """
-    centre = x_loop.mean(axis=0)
-    axes = np.linalg.svd(x_loop - centre)[2]
-    a, b = ((x - centre) @ axes[:2].T / np.abs(x_loop - centre).max()).T
-    powers = [(i, d - i) for d in (2, 3, 4) for i in range(d + 1)]
-    height = sum(rng.standard_normal() * a**i * b**j for i, j in powers)
-    return np.outer(height * (_KICK_SIZE / np.abs(height).max()), axes[axis])
 
 
 def _with_mesh(problem: Problem, start: FloatArray, found: Equilibrium) -> Equilibrium:
@@ -154,11 +136,11 @@ def _descend(
                 else problem.condensed.extend(iterate.x[problem.loop_vertices])
             )
             problem, x = centred(problem, x)
-        except LinAlgError:  # no film
+            iterate, at_rest = replace(iterate, x=x), True
+            forces, tension, scale = _forces(problem, iterate, load, penalty)
+        except LinAlgError:  # no film, or no loop
             return _record(problem, iterate, load, Status.STALLED)
-        iterate, at_rest = replace(iterate, x=x), True
-        forces, tension, scale = _forces(problem, iterate, load, penalty)
-        if scale == 0.0:  # not even bending: a point
+        if scale == 0.0 or problem.pinched(x):  # a point; a soap film without width
             return _record(problem, iterate, load, Status.STALLED)
         residual = float(np.abs(forces).max()) / scale
         if not np.isfinite(residual):
@@ -224,7 +206,7 @@ def _forces(
         problem.tension_force(x, tension),
     )
     scale = max(float(np.abs(part).max()) for part in parts)
-    return parts[0] + parts[1] + parts[2], tension, scale
+    return problem.unslid(x, parts[0] + parts[1] + parts[2]), tension, scale
 
 
 def _minimise(
@@ -284,7 +266,7 @@ def _minimise(
             "maxiter": _ITERATIONS_PER_BASE,
         },
     )
-    if not reached.any() and not found.success:
+    if not reached.any():
         return None
     return replace(
         iterate,

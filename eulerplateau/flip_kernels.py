@@ -21,9 +21,12 @@ def _corner_normal(x: FloatArray, i: int, j: int, k: int) -> FloatArray:
 
 @njit(cache=True)
 def _cotangent(x: FloatArray, at: int, i: int, j: int) -> float:
-    a, b = x[i] - x[at], x[j] - x[at]
-    cross = np.cross(a, b)
-    cotangent: float = (a * b).sum() / max(np.sqrt((cross * cross).sum()), 1e-300)
+    ax, ay, az = x[i, 0] - x[at, 0], x[i, 1] - x[at, 1], x[i, 2] - x[at, 2]
+    bx, by, bz = x[j, 0] - x[at, 0], x[j, 1] - x[at, 1], x[j, 2] - x[at, 2]
+    cx, cy, cz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    cotangent: float = (ax * bx + ay * by + az * bz) / max(
+        np.sqrt(cx * cx + cy * cy + cz * cz), 1e-300
+    )
     return cotangent
 
 

@@ -173,3 +173,34 @@ def area_beyond_linear(
             gradient[k, axis] += 0.5 * at_k[axis] / size
             gradient[i, axis] -= 0.5 * (at_j[axis] + at_k[axis]) / size
     return value
+
+
+@njit(cache=True)
+def strands_within(x: FloatArray, reach: float, apart: int) -> bool:
+    """Whether vertices of a loop at least `apart` edges from each other are within reach.
+
+    A vertex at the distance d is followed by others at less than `reach` only after
+    (d - reach) / (longest edge) edges, which are left out. x : (n, d), cyclic.
+    """
+    n = x.shape[0]
+    longest = 0.0
+    for v in range(n):
+        longest = max(longest, _squared_distance(x, v, (v + 1) % n))
+    longest = np.sqrt(longest)
+    for v in range(n):
+        u = v + apart
+        while u <= v + n - apart and u < n:
+            distance = np.sqrt(_squared_distance(x, v, u))
+            if distance < reach:
+                return True
+            ahead = (distance - reach) / longest if longest > 0.0 else 0.0
+            u += max(1, int(min(ahead, float(n))))
+    return False
+
+
+@njit(cache=True)
+def _squared_distance(x: FloatArray, i: int, j: int) -> float:
+    square = 0.0
+    for d in range(x.shape[1]):
+        square += (x[i, d] - x[j, d]) ** 2
+    return square

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from eulerplateau import kernels
 from eulerplateau.mesh import FloatArray
 
 # Edges in which a resolved loop can turn back on itself.
@@ -70,12 +71,8 @@ class Loop:
         n = len(x_loop)
         if n < 4 * _TURNING_BACK:
             return False
-        from scipy.spatial.distance import cdist
-
-        number = np.arange(n)
-        between = np.abs(number - number[:, None])
-        apart = np.minimum(between, n - between) >= _TURNING_BACK
-        return bool(cdist(x_loop, x_loop)[apart].min() < self.rest_lengths.max())
+        x = np.ascontiguousarray(x_loop)
+        return kernels.strands_within(x, float(self.rest_lengths.max()), _TURNING_BACK)
 
     def bending_force(self, x_loop: FloatArray) -> FloatArray:
         """Return the gradient (n_b, 3) of sum_v <s_v> kappa_v^2, i.e. 2 B x.

@@ -7,11 +7,9 @@ import numpy as np
 from eulerplateau.inextensible import length_metric
 from eulerplateau.loop import Loop, backward_differences, differences
 from eulerplateau.mesh import FloatArray
+from eulerplateau.slide_kernels import SLIDES
 
 RIGID_MOTIONS = 6
-# Of a circle, sliding is a rotation. What is left of it, of 1, is a motion of its own beyond
-# this; nearer to a circle it cannot be told from the shape's modes, and stays among them.
-_SLIDES = 0.05
 
 # Row k is the matrix G_k with axis_k x r = r G_k.
 TURNS = np.array(
@@ -45,15 +43,17 @@ def sliding(loop: Loop, x: FloatArray) -> FloatArray | None:
     A soap film does not know which piece of a uniform loop lies where: a loop that slides
     along its own curve changes nothing but how the vertices lie on it, which is to say the
     discretisation. That displacement is the tangent, made to keep all lengths (J p = 0) and
-    orthogonal to rigid motions, both in the norm sum_v <s_v> |p_v|^2.
+    orthogonal to rigid motions, both in the norm sum_v <s_v> |p_v|^2. Raises LinAlgError
+    if an edge has no length.
     """
     mass = loop.mean_lengths[:, None]
+    metric = length_metric(loop, x)
     along = x - np.roll(x, 1, axis=0)
     along = along / np.linalg.norm(along, axis=1)[:, None]
     tangent = along + np.roll(along, -1, axis=0)
     direction = differences(x) / loop.rest_lengths[:, None]
     stretch = (direction * differences(tangent)).sum(axis=1)
-    pull = length_metric(loop, x).solve(stretch)
+    pull = metric.solve(stretch)
     slide = tangent + backward_differences(pull[:, None] * direction) / mass
     root = np.repeat(np.sqrt(loop.mean_lengths), x.shape[1])
     rigid = np.linalg.qr(rigid_motions(x) * root[:, None])[0]
@@ -61,7 +61,7 @@ def sliding(loop: Loop, x: FloatArray) -> FloatArray | None:
     whole = float(np.linalg.norm(weighted))
     weighted = weighted - rigid @ (rigid.T @ weighted)
     size = float(np.linalg.norm(weighted))
-    if size < _SLIDES * whole:
+    if size < SLIDES * whole:
         return None
     found: FloatArray = (weighted / (size * root)).reshape(x.shape)
     return found

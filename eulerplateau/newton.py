@@ -72,10 +72,11 @@ def _found(
     # Loaded only where a film asks for it.
     from eulerplateau.soap_newton import search_in_plane, search_soap
 
-    search = search_soap if isinstance(problem.film, AreaFilm) else search_in_plane
+    if not isinstance(problem.film, AreaFilm):
+        return search_in_plane(problem, x, load, max_iterations, observe)
     # Blocks of a hundred rows: two threads would mostly wait for each other.
     with threadpool_limits(1, user_api="blas"):
-        return search(problem, x, load, max_iterations, observe)
+        return search_soap(problem, x, load, max_iterations, observe)
 
 
 def _search(

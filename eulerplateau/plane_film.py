@@ -33,6 +33,13 @@ class PlaneFilm:
         flat: FloatArray = x @ self.axes.T @ self.axes
         return flat
 
+    def laid(self, x: FloatArray) -> FloatArray:
+        """Return a shape (n_v, 3) flattened, and turned over if its loop runs clockwise."""
+        flat = self.flattened(x)
+        if polygon_area(x[self.soap.loop] @ self.axes.T) < 0:
+            flat -= 2 * np.outer(x @ self.axes[1], self.axes[1])
+        return flat
+
     def energy_gradient(self, x: FloatArray, load: float) -> tuple[float, FloatArray]:
         """Return load * area of the loop's polygon and its gradient (n_v, 3)."""
         flat = x[self.soap.loop] @ self.axes.T

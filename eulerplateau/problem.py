@@ -126,15 +126,15 @@ class Problem:
     def residual(self, x: FloatArray, multipliers: FloatArray, load: float) -> float:
         """Return the imbalance of forces over the largest force, both as max norms.
 
-        Infinite where a soap film's triangles are so degenerate that they bear no film.
+        Infinite where a soap film is so degenerate that there is no film or no loop.
         """
+        bending, tension = self.bending_energy(x)[1], self.tension_force(x, multipliers)
         try:
             film = self.film_forces(x, load)
+            total = self.unslid(x, bending + film + tension)
         except LinAlgError:
             return np.inf
-        forces = self.bending_energy(x)[1], film, self.tension_force(x, multipliers)
-        scale = max(float(np.abs(f).max()) for f in forces)
-        total = self.unslid(x, forces[0] + forces[1] + forces[2])
+        scale = max(float(np.abs(f).max()) for f in (bending, film, tension))
         return float(np.abs(total).max()) / scale if scale != 0 else 0.0
 
     def unslid(self, x: FloatArray, forces: FloatArray) -> FloatArray:
@@ -193,9 +193,15 @@ class Problem:
         )
 
     def pinched(self, x: FloatArray) -> bool:
-        """Whether a soap film (n_v, 3) has run out of width: strands of its loop meet."""
-        soap = not isinstance(self.film, Film)
-        return soap and self.loop.strands_meet(x[self.loop_vertices])
+        """Whether a soap film (n_v, 3) has run out of width: strands of its loop meet.
+
+        Or, in its plane, have passed each other and turned the film inside out.
+        """
+        film = self.film
+        if isinstance(film, Film):
+            return False
+        inside_out = isinstance(film, PlaneFilm) and film.energy_gradient(x, 1.0)[0] < 0
+        return inside_out or self.loop.strands_meet(x[self.loop_vertices])
 
     def judged(self, found: Equilibrium) -> Equilibrium:
         """Return `found`; UNRESOLVED if it converged to a loop that its mesh cannot carry.

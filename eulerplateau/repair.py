@@ -46,10 +46,13 @@ def carried(
     return repaired(film, after) if moved.smallest_angle < THIN else (film, after)
 
 
-def repaired(film: AreaFilm, x: FloatArray) -> tuple[AreaFilm, FloatArray]:
+def repaired(
+    film: AreaFilm, x: FloatArray, enough: float = np.inf
+) -> tuple[AreaFilm, FloatArray]:
     """Return the film with other triangles and its shape (n_v, 3), the loop untouched.
 
-    The best found: never a smaller worst angle than before.
+    The best found, or the first whose worst angle is `enough` (degrees): never a smaller
+    worst angle than before.
     """
     best = film, x
     angle = film.sides(x).smallest_angle
@@ -61,7 +64,7 @@ def repaired(film: AreaFilm, x: FloatArray) -> tuple[AreaFilm, FloatArray]:
         idle = 0 if reached > angle + _GAIN else idle + 1
         if reached > angle:
             best, angle = (film, x), reached
-        if idle > 5:
+        if idle > 5 or angle > enough:
             break
     return best
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
 from scipy.linalg import LinAlgError
+from threadpoolctl import threadpool_limits
 
 from eulerplateau.area_energy import AreaEnergy
 from eulerplateau.area_film import AreaFilm
@@ -17,17 +17,15 @@ from eulerplateau.inextensible import close_with_lengths
 from eulerplateau.mesh import FloatArray
 from eulerplateau.plane_energy import PlaneEnergy
 from eulerplateau.plane_film import PlaneFilm
-from eulerplateau.plane_newton import COARSE, Flat, coarse_minimum, settle_in_plane
+from eulerplateau.plane_mesh import carried_in_plane
+from eulerplateau.plane_newton import Flat, minimum_in_plane
 from eulerplateau.problem import Problem
 from eulerplateau.repair import carried
 from eulerplateau.solution import Equilibrium, Status
-from eulerplateau.stability import Stability
-from eulerplateau.tangent import LoopEnergy
+from eulerplateau.tangent import DENSE_LOOP, LoopEnergy
 
 # A soap film is sought near the last shape at most so many times in one solve.
 _CHARTS = 60
-# A fine polygon settles this close to the coarse one it was started from (in L).
-_NEAR = 0.05
 
 
 def search_soap(
@@ -104,7 +102,7 @@ def _charted(
         if film is not first:
             found = replace(found, triangles=film.triangles)
         own = energy.holds(state.model.x) and energy.at_centre(state.model.x)
-        lost = status is Status.STALLED or problem.loop.strands_meet(state.model.x)
+        lost = status is Status.STALLED or problem.pinched(found.x)
         if own or lost or spent >= max_iterations:
             return found
         x, x_loop = found.x, state.model.x
@@ -120,48 +118,31 @@ def search_in_plane(
 ) -> Equilibrium | None:
     """Return what a film kept in its plane comes to; None if no loop is near x.
 
-    A fine loop is settled from the minimum of a coarse one, whose index is then its own.
+    Where the chain's own descent gets stuck the general one takes over, on small loops.
     """
     film = problem.film
     assert isinstance(film, PlaneFilm)
+    x = film.laid(x)
     flat = close_with_lengths(problem.loop, x[problem.loop_vertices] @ film.axes.T)
     if flat is None:
         return None
     energy = PlaneEnergy(problem.loop, load)
 
     def shown(polygon: FloatArray) -> None:
-        if len(polygon) == len(flat):
-            observe(polygon @ film.axes)
+        observe(polygon @ film.axes)
 
-    fine = _settled_from_coarse(energy, flat, max_iterations, shown)
-    if fine is not None:
-        polygon, spectrum = fine
+    minimum = minimum_in_plane(energy, flat, max_iterations, shown)
+    if minimum is not None:
+        polygon, spectrum = minimum
         status = Status.CONVERGED
+    elif len(flat) > DENSE_LOOP:
+        return None
     else:
-        state, status = Descent(energy, max_iterations, shown).run(flat)
+        with threadpool_limits(1, user_api="blas"):
+            state, status = Descent(energy, max_iterations, shown).run(flat)
         polygon = Flat(state.model.x, state.model.multipliers, state.iteration)
         spectrum = state.stability or stability_of(energy, state.model)
     return judged(_lifted(problem, x, polygon, load, status), spectrum)
-
-
-def _settled_from_coarse(
-    energy: PlaneEnergy,
-    x: FloatArray,
-    max_iterations: int,
-    observe: Callable[[FloatArray], None],
-) -> tuple[Flat, Stability | None] | None:
-    """Return the equilibrium of a fine loop by way of a coarse one; None if that fails."""
-    if len(x) <= 2 * COARSE:
-        return None
-    coarse = coarse_minimum(energy, x, max_iterations, observe)
-    if coarse is None:
-        return None
-    state, smooth = coarse
-    settled = settle_in_plane(energy, smooth, max_iterations - state.iteration)
-    if settled is None or float(np.abs(settled.x - smooth).max()) > _NEAR:
-        return None
-    spent = state.iteration + settled.iterations
-    return replace(settled, iterations=spent), state.stability
 
 
 def _lifted(
@@ -170,7 +151,8 @@ def _lifted(
     """Return the flat film (n_v, 3) on a polygon, its mesh moved along from x (n_v, 3)."""
     film = problem.film
     assert isinstance(film, PlaneFilm)
-    soap, moved = carried(film.soap, film.flattened(x), polygon.x @ film.axes)
+    spanned = not problem.loop.strands_meet(polygon.x)
+    soap, moved = carried_in_plane(film, x, polygon.x, spanned)
     found = problem.equilibrium(moved, polygon.multipliers, load, status)
     changed = None if soap is film.soap else soap.triangles
     return replace(found, iterations=polygon.iterations, triangles=changed)

@@ -3,7 +3,8 @@
 A film of fixed weights moves with all its vertices and is quadratic in them. A soap film's
 vertices move along their normals, on top of how the mesh follows its loop (chart.py):
 sliding costs nothing, and a descent along it would end in thin triangles. A film kept in
-its plane has two unknowns at each vertex of its loop, and no others.
+its plane has no unknowns but its loop's. Of both the loop is kept from sliding along
+itself, which costs nothing either (motions.py).
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from eulerplateau.area_film import AreaFilm
 from eulerplateau.chart import Chart
 from eulerplateau.film import Film
 from eulerplateau.kernels import area_beyond_linear
+from eulerplateau.loop import Loop
 from eulerplateau.mesh import FloatArray, IntArray
+from eulerplateau.motions import sliding, without
 from eulerplateau.plane_film import PlaneFilm, polygon_gradient
 from eulerplateau.problem import Problem
 
@@ -74,11 +77,12 @@ def trial_space(problem: Problem, x: FloatArray, load: float) -> TrialSpace:
     film = problem.film
     if isinstance(film, Film):
         return _Everywhere(film, x, load)
+    loop, slide = problem.loop, sliding(problem.loop, x[problem.loop_vertices])
     if isinstance(film, PlaneFilm):
-        return _InPlane(film, load)
+        return _InPlane(loop, slide, film, load)
     chart = problem.condensed
     assert isinstance(chart, Chart)
-    return _AlongNormals(chart, load)
+    return _AlongNormals(loop, slide, chart, load)
 
 
 @dataclass(frozen=True)
@@ -111,8 +115,23 @@ class _Everywhere:
         return True
 
 
-class _NoSprings:
-    """A film whose energy is quadratic nowhere, or in other unknowns than positions."""
+@dataclass(frozen=True)
+class _Sliding:
+    """A film that only sees its loop's curve: `slide` (n_b, 3), None if that is rigid."""
+
+    loop: Loop
+    slide: FloatArray | None
+
+    def kept(self, moved: FloatArray) -> FloatArray:
+        """Return a displacement (n_b, 3) of the loop without its part along `slide`."""
+        if self.slide is None:
+            return moved
+        share = float(np.sum(self.loop.mean_lengths[:, None] * self.slide * moved))
+        return moved - share * self.slide
+
+    def pulled(self, forces: FloatArray) -> FloatArray:
+        """Return forces (n_b, 3) on the loop without what `kept` makes nothing of."""
+        return without(self.slide, self.loop, forces)
 
     @property
     def springs(self) -> tuple[IntArray, FloatArray]:
@@ -120,7 +139,7 @@ class _NoSprings:
 
 
 @dataclass(frozen=True)
-class _AlongNormals(_NoSprings):
+class _AlongNormals(_Sliding):
     chart: Chart
     load: float
 
@@ -138,14 +157,14 @@ class _AlongNormals(_NoSprings):
 
     def displacement(self, unknown: FloatArray) -> FloatArray:
         chart, n = self.chart, 3 * len(self.chart.film.loop)
-        moved = chart.follow(unknown[:n].reshape(-1, 3))
+        moved = chart.follow(self.kept(unknown[:n].reshape(-1, 3)))
         moved[chart.film.interior] += unknown[n:, None] * chart.normals
         return moved
 
     def collect(self, gradient: FloatArray) -> FloatArray:
         chart = self.chart
         along = (gradient[chart.film.interior] * chart.normals).sum(axis=1)
-        return np.concatenate([chart.carry(gradient).ravel(), along])
+        return np.concatenate([self.pulled(chart.carry(gradient)).ravel(), along])
 
     def beyond_linear(self, moved: FloatArray, gradient: FloatArray) -> float:
         chart = self.chart
@@ -159,25 +178,24 @@ class _AlongNormals(_NoSprings):
 
 
 @dataclass(frozen=True)
-class _InPlane(_NoSprings):
+class _InPlane(_Sliding):
     film: PlaneFilm
     load: float
 
     @property
     def size(self) -> int:
-        return 2 * len(self.film.soap.loop)
+        return 3 * len(self.film.soap.loop)
 
     def lift(self, forces: FloatArray) -> FloatArray:
         return forces
 
     def displacement(self, unknown: FloatArray) -> FloatArray:
         moved = np.zeros((self.film.soap.n_v, 3))
-        moved[self.film.soap.loop] = unknown.reshape(-1, 2) @ self.film.axes
+        moved[self.film.soap.loop] = self.kept(self.film.flattened(unknown.reshape(-1, 3)))
         return moved
 
     def collect(self, gradient: FloatArray) -> FloatArray:
-        along: FloatArray = gradient[self.film.soap.loop] @ self.film.axes.T
-        return along.ravel()
+        return self.film.flattened(self.pulled(gradient[self.film.soap.loop])).ravel()
 
     def beyond_linear(self, moved: FloatArray, gradient: FloatArray) -> float:
         # A polygon's area is quadratic in its corners.

@@ -15,6 +15,8 @@ from error_scenes import SCENES
 
 COARSE_TO_FINE = ", coarse to fine"
 EXTRAPOLATED = ", extrapolated"
+# The "mesh" of a solver that has none; its loop_edges are harmonics.
+HARMONICS = "harmonics"
 
 
 @dataclass(frozen=True)
@@ -23,6 +25,8 @@ class Measurement:
 
     Attributes
     ----------
+    loop_edges, vertices : int
+        Of the mesh; without one, the harmonics and the unknowns.
     set_up, solve : float
         Wall seconds. Of Evolver, set_up is its start with reading the datafiles.
     cpu : float
@@ -124,15 +128,21 @@ def points(found: Iterable[Measurement]) -> list[Point]:
 def extrapolated(known: list[Point]) -> list[Point]:
     """Return what two meshes, one twice as fine, give together: (4 fine - coarse) / 3.
 
-    The error of order h^2 cancels. The cost is both points', or the fine one's where it
-    came from the coarse one. Only where the answer is known exactly, for any tool alike.
+    The error of order h^2 cancels; harmonics have none. The cost is both points', or the
+    fine one's where it came from the coarse one. Only where the answer is known exactly,
+    for any tool alike.
     """
     found = []
     for coarse, fine in pairwise(known):
         a, b = coarse.first, fine.first
         answer = SCENES[b.scene].answer
         same = (a.scene, a.solver, a.mesh) == (b.scene, b.solver, b.mesh)
-        if answer is None or not same or b.loop_edges != 2 * a.loop_edges:
+        if (
+            answer is None
+            or b.mesh == HARMONICS
+            or not same
+            or b.loop_edges != 2 * a.loop_edges
+        ):
             continue
         value = (4 * b.value - a.value) / 3
         first = replace(

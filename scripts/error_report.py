@@ -14,6 +14,7 @@ import numpy as np
 from error_arithmetic import BoolArray, fitted_order, pareto, seconds_to
 from error_records import (
     EXTRAPOLATED,
+    HARMONICS,
     Measurement,
     Point,
     extrapolated,
@@ -22,11 +23,14 @@ from error_records import (
 from error_scenes import SCENES
 
 EVOLVER = "evolver"
+# Smaller errors are no better.
+ROUNDING = 1e-15
 STATED = (1e-3, 1e-4, 1e-5, 1e-6)
 MARKERS = {
     "newton": ("o", "black"),
     "newton, coarse to fine": ("D", "tab:green"),
     "cg": ("s", "tab:blue"),
+    "conformal": ("*", "tab:purple"),
     "evolver": ("^", "tab:orange"),
     "evolver, coarse to fine": ("v", "tab:red"),
     "evolver, gradients": ("x", "tab:brown"),
@@ -44,6 +48,9 @@ def markdown(found: list[Measurement]) -> str:
         f"{platform.python_version()}, {cpus} CPUs, one BLAS thread. CPU seconds, medians.",
         "",
         *_times(known),
+        "",
+        "`conformal` has harmonics in place of a mesh and keeps, and uses, the start's "
+        "symmetry; it converges exponentially and has no order.",
         "",
         *_orders(known),
         "",
@@ -77,7 +84,7 @@ def on_front(known: list[Point]) -> BoolArray:
 
 def _error(point: Point) -> float:
     """Return the error to three digits: rounding alone must not make one solver better."""
-    return float(f"{point.first.error:.2e}")
+    return float(f"{max(point.first.error, ROUNDING):.2e}")
 
 
 def _scenes(known: list[Point]) -> dict[str, list[Point]]:
@@ -99,7 +106,8 @@ def _times(known: list[Point]) -> list[str]:
     for name, group in _scenes(known).items():
         lines.append(f"| {name} | {_compared(group)} |")
         if both := extrapolated(group):
-            lines.append(f"| ... from two meshes | {_compared(both)} |")
+            both += [p for p in group if p.first.mesh == HARMONICS]
+            lines.append(f"| ... or from two meshes | {_compared(both)} |")
     return lines
 
 
@@ -126,7 +134,7 @@ def _orders(known: list[Point]) -> list[str]:
 
     for (scene, solver, mesh), group in groupby(known, key):
         ladder = [p for p in group if p.first.error > 0]
-        if len(ladder) < 3:
+        if mesh == HARMONICS or len(ladder) < 3:
             continue
         h = [1 / p.first.loop_edges for p in ladder]
         energy = [p.first.error for p in ladder]
@@ -196,12 +204,17 @@ def advice(known: list[Point]) -> str:
             parts.append(f"an error of {error:.0e} was not reached in every scene")
             continue
         way, seconds = found
-        how = f"`{way.solver.removesuffix(EXTRAPOLATED)}` on {way.mesh} meshes of "
+        wanted = f"for an error of {error:.0e} use"
+        how = f"`{way.solver.removesuffix(EXTRAPOLATED)}` "
+        if way.mesh == HARMONICS:
+            parts.append(f"{wanted} {how}with {way.loop_edges} harmonics ({seconds:.2g} s)")
+            continue
+        how += f"on {way.mesh} meshes of "
         if way.solver.endswith(EXTRAPOLATED):
             how += f"{way.loop_edges // 2} and {way.loop_edges} loop edges combined"
         else:
             how += f"{way.loop_edges} loop edges"
-        parts.append(f"for an error of {error:.0e} use {how} ({seconds:.2g} s)")
+        parts.append(f"{wanted} {how} ({seconds:.2g} s)")
     return "; ".join(parts) + "."
 
 
@@ -222,12 +235,12 @@ def draw(path: Path, found: list[Measurement]) -> None:
     lines: dict[str, Line2D] = {}
     for ax, (name, group) in zip(axes.flat, scenes.items(), strict=False):
         seconds = np.array([p.cpu for p in group])
-        errors = np.array([p.first.error for p in group])
+        errors = np.array([_error(p) for p in group])
         front = on_front(group)
         order = np.argsort(seconds[front])
         ax.loglog(seconds[front][order], errors[front][order], color="0.85", lw=7, zorder=0)
         for solver, (marker, colour) in MARKERS.items():
-            for kind in ("lattice", "uniform", "graded"):
+            for kind in ("lattice", "uniform", "graded", "fan", HARMONICS):
                 line = [
                     p for p in group if (p.first.solver, p.first.mesh) == (solver, kind)
                 ]
@@ -235,11 +248,11 @@ def draw(path: Path, found: list[Measurement]) -> None:
                     continue
                 (drawn,) = ax.loglog(
                     [p.cpu for p in line],
-                    [p.first.error for p in line],
+                    [_error(p) for p in line],
                     marker=marker,
                     color=colour,
-                    markerfacecolor=colour if kind == "graded" else "white",
-                    linestyle="-" if kind == "graded" else "--",
+                    markerfacecolor=colour if kind in ("graded", "fan") else "white",
+                    linestyle="-" if kind in ("graded", "fan") else "--",
                     markersize=5,
                 )
                 lines.setdefault(f"{solver}, {kind}", drawn)

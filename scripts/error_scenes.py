@@ -71,11 +71,17 @@ class Scene:
         return self.threshold if self.exact is None else self.exact.energy
 
     def mesh(self, kind: str, loop_edges: int) -> DiskMesh:
-        """Return the "uniform", "graded" or "lattice" rest mesh with so many loop edges."""
+        """Return the rest mesh of a kind with so many loop edges.
+
+        "uniform", "graded", "lattice", or "fan": one vertex inside, which is more than a
+        film kept in its plane needs.
+        """
         polygon = dict(self.polygon)
         if kind == "lattice":
             return lattice(loop_edges // 6, float(polygon["factor"]))
         corners = chain(polygon, loop_edges)
+        if kind == "fan":
+            return fan(corners)
         edge = float(np.linalg.norm(np.diff(corners, axis=0), axis=1).max())
         polygon = {"kind": "corners", "points": corners.tolist()}
         grading = GRADING if kind == "graded" else 1.0
@@ -91,6 +97,17 @@ class Scene:
 
 
 _planar_film = cache(planar_film)
+
+
+def fan(corners: FloatArray) -> DiskMesh:
+    """Return the polygon (n, 2) with one vertex inside, at its mean."""
+    n = len(corners)
+    points = np.zeros((n + 1, 3))
+    points[:n, :2] = corners
+    points[n, :2] = corners.mean(axis=0)
+    v = np.arange(n)
+    rim = np.column_stack([v, (v + 1) % n, np.full(n, n)])
+    return DiskMesh.from_triangles(points, rim)
 
 
 def chain(polygon: dict[str, Any], loop_edges: int) -> FloatArray:
@@ -158,13 +175,14 @@ def prolong(
     return x
 
 
-def shape_error(mesh: DiskMesh, loop: FloatArray, exact: PlanarFilm) -> float:
+def shape_error(lengths: FloatArray, loop: FloatArray, exact: PlanarFilm) -> float:
     """Return the root mean square distance, in L, of `loop` (n_b, 3) from the exact loop.
 
-    After the best rigid motion, and the best place on the loop to start counting from.
+    After the best rigid motion, and the best place on the loop to start counting from;
+    lengths : (n_b,), of the loop from vertex to vertex.
     """
-    places = np.concatenate([[0.0], np.cumsum(mesh.rest_lengths)[:-1]])
-    weights = 0.5 * (mesh.rest_lengths + np.roll(mesh.rest_lengths, 1))
+    places = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+    weights = 0.5 * (lengths + np.roll(lengths, 1))
 
     def distance(phase: float) -> float:
         target = np.pad(exact.positions(places + phase), ((0, 0), (0, 1)))
@@ -191,12 +209,12 @@ def _distance_up_to_motion(x: FloatArray, y: FloatArray, weights: FloatArray) ->
     return float(np.sqrt(weights @ gap / weights.sum()))
 
 
-def gyration(mesh: DiskMesh, loop: FloatArray) -> float:
+def gyration(lengths: FloatArray, loop: FloatArray) -> float:
     """Return the root mean square distance of a loop (n_b, 3) from its centre, in L.
 
     It stands for the shape where only a limit of numbers is to be had.
     """
-    weights = 0.5 * (mesh.rest_lengths + np.roll(mesh.rest_lengths, 1))
+    weights = 0.5 * (lengths + np.roll(lengths, 1))
     return float(np.sqrt(weights @ np.square(loop - weights @ loop).sum(axis=1)))
 
 

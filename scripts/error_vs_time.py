@@ -17,12 +17,13 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 import numpy as np
+from error_conformal import CONFORMAL, LADDER, conformal_repeats, unknowns
 from error_measure import ENOUGH, REPEATS, distance, repeated
-from error_records import COARSE_TO_FINE, Measurement, with_errors, write_csv
+from error_records import COARSE_TO_FINE, HARMONICS, Measurement, with_errors, write_csv
 from error_report import draw, markdown
 from error_scenes import SCENES, Scene, gyration, prolong
 from evolver import EvolverRun, find_evolver, relax, run_evolver
@@ -30,13 +31,21 @@ from evolver_files import film_datafile, gradient_script, start_script, string_d
 
 from eulerplateau.mesh import DiskMesh
 
-# Seconds beyond ENOUGH after which a solver is given up, on finer meshes too.
-TOO_SLOW = 60.0
+# Seconds beyond ENOUGH after which a solver is given up, on finer meshes too: 20 s in all.
+TOO_SLOW = 10.0
 # Loop edges of the meshes, each twice as fine as the one before.
-LEVELS = {"uniform": 4, "graded": 5, "lattice": 4}
+LEVELS = {"uniform": 4, "graded": 5, "fan": 5, "lattice": 4}
 COARSEST = 36
 # Without its interior a film's loop of 36 edges leads Evolver astray.
 COARSEST_IN_PLANE = 72
+
+
+class Place(NamedTuple):
+    """Where a point is computed: see Measurement."""
+
+    kind: str
+    loop_edges: int
+    vertices: int
 
 
 @click.group(invoke_without_command=True)
@@ -60,8 +69,9 @@ def main(context: click.Context, names: tuple[str, ...], out: Path) -> None:
 @main.command()
 @click.argument("meshes", nargs=-1, type=click.Path(path_type=Path, exists=True))
 @click.option("--scene", required=True, type=click.Choice(list(SCENES)))
-@click.option("--solver", required=True, type=click.Choice(["newton", "cg"]))
-def point(meshes: tuple[Path, ...], scene: str, solver: str) -> None:
+@click.option("--solver", required=True, type=click.Choice(["newton", "cg", CONFORMAL]))
+@click.option("--harmonics", default=0, help="In place of meshes.")
+def point(meshes: tuple[Path, ...], scene: str, solver: str, harmonics: int) -> None:
     """Measure one point in this process and print its repeats as JSON.
 
     Solved on the last of the meshes, coming from the ones before it.
@@ -69,8 +79,12 @@ def point(meshes: tuple[Path, ...], scene: str, solver: str) -> None:
     from threadpoolctl import threadpool_limits
 
     with threadpool_limits(1, user_api="blas"):
-        sequence = [read_mesh(path) for path in meshes]
-        for record in repeated(sequence, SCENES[scene], solver):
+        if solver == CONFORMAL:
+            records = conformal_repeats(SCENES[scene], harmonics)
+        else:
+            sequence = [read_mesh(path) for path in meshes]
+            records = repeated(sequence, SCENES[scene], solver)
+        for record in records:
             click.echo(json.dumps(record))
 
 
@@ -78,7 +92,7 @@ def kinds(scene: Scene) -> tuple[str, ...]:
     """Return the kinds of meshes that make a difference in a scene."""
     if scene.film == "springs":  # they have a limit on nested lattices only
         return ("lattice",)
-    return ("graded",) if scene.in_plane else ("uniform", "graded")
+    return ("fan",) if scene.in_plane else ("uniform", "graded")
 
 
 def solvers(scene: Scene) -> tuple[str, ...]:
@@ -93,6 +107,8 @@ def solvers(scene: Scene) -> tuple[str, ...]:
 
 def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
     """Yield every repeat of every point of a scene."""
+    if scene.film == "area" and scene.threshold is None:
+        yield from measure_conformal(scene)
     for kind in kinds(scene):
         coarsest = COARSEST_IN_PLANE if scene.in_plane else COARSEST
         levels = 4 if scene.in_plane else LEVELS[kind]
@@ -103,9 +119,10 @@ def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
         for solver in solvers(scene):
             for last, mesh in enumerate(meshes):
                 first = 0 if solver.endswith(COARSE_TO_FINE) else last
+                place = Place(kind, mesh.n_b, mesh.n_v)
                 records = run_point(paths[first : last + 1], scene, solver)
-                yield from (as_measurement(scene, solver, kind, mesh, r) for r in records)
-                summarise(scene, solver, kind, mesh, records)
+                yield from (as_measurement(scene, solver, place, r) for r in records)
+                summarise(scene, solver, place, records)
                 if not records or records[-1]["cpu"] > ENOUGH:
                     break
         with_evolver = scene.film == "area" and scene.threshold is None
@@ -113,9 +130,21 @@ def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
             yield from measure_evolver(scene, kind, meshes)
 
 
-def run_point(meshes: list[Path], scene: Scene, solver: str) -> list[dict[str, Any]]:
+def measure_conformal(scene: Scene) -> Iterator[Measurement]:
+    """Yield every repeat without a mesh."""
+    for harmonics in LADDER:
+        place = Place(HARMONICS, harmonics, unknowns(scene, harmonics))
+        options = ("--harmonics", str(harmonics))
+        records = run_point([], scene, CONFORMAL, *options)
+        yield from (as_measurement(scene, CONFORMAL, place, r) for r in records)
+        summarise(scene, CONFORMAL, place, records)
+
+
+def run_point(
+    meshes: list[Path], scene: Scene, solver: str, *options: str
+) -> list[dict[str, Any]]:
     """Run one point in a process of its own; nothing if it takes too long."""
-    command = [sys.executable, __file__, "point", *map(str, meshes)]
+    command = [sys.executable, __file__, "point", *map(str, meshes), *options]
     command += ["--scene", scene.name, "--solver", solver.removesuffix(COARSE_TO_FINE)]
     try:
         done = subprocess.run(
@@ -135,6 +164,7 @@ def measure_evolver(
     describe = string_datafile if scene.in_plane else film_datafile
     for name in ("evolver", f"evolver{COARSE_TO_FINE}"):
         for last, mesh in enumerate(meshes):
+            place = Place(kind, mesh.n_b, mesh.n_v)
             sequence = meshes[: last + 1] if name != "evolver" else [mesh]
             reading = 0.0
             for level in sequence:
@@ -145,15 +175,16 @@ def measure_evolver(
                 records.append(evolver_record(scene, sequence, repeat, reading))
                 if sum(record["cpu"] for record in records) > ENOUGH:
                     break
-            yield from (as_measurement(scene, name, kind, mesh, r) for r in records)
-            summarise(scene, name, kind, mesh, records)
+            yield from (as_measurement(scene, name, place, r) for r in records)
+            summarise(scene, name, place, records)
     if not scene.in_plane and kind == "uniform":
         mesh = meshes[1]
+        place = Place(kind, mesh.n_b, mesh.n_v)
         data = film_datafile(mesh, scene.start(mesh), scene.load)
         run = run_evolver(data, gradient_script(TOO_SLOW), seconds=2 * TOO_SLOW)
         record = as_record(scene, mesh, run, 0, 0.0)
-        yield as_measurement(scene, "evolver, gradients", kind, mesh, record)
-        summarise(scene, "evolver, gradients", kind, mesh, [record])
+        yield as_measurement(scene, "evolver, gradients", place, record)
+        summarise(scene, "evolver, gradients", place, [record])
 
 
 def evolver_record(
@@ -175,6 +206,9 @@ def as_record(
     scene: Scene, mesh: DiskMesh, run: EvolverRun, repeat: int, reading: float
 ) -> dict[str, Any]:
     """Return Evolver's run as a record; `reading`: seconds of starting and reading."""
+    reached = math.nan
+    if run.converged:
+        reached = distance(scene, mesh.rest_lengths, run.loop)
     return {
         "repeat": repeat,
         "set_up": reading,
@@ -184,36 +218,36 @@ def as_record(
         "iterations": run.steps,
         "memory": run.memory,
         "value": run.energy,
-        "gyration": gyration(mesh, run.loop),
-        "shape_error": distance(scene, mesh, run.loop) if run.converged else math.nan,
+        "gyration": gyration(mesh.rest_lengths, run.loop),
+        "shape_error": reached,
         "status": "converged" if run.converged else "failed",
     }
 
 
 def as_measurement(
-    scene: Scene, solver: str, kind: str, mesh: DiskMesh, record: dict[str, Any]
+    scene: Scene, solver: str, place: Place, record: dict[str, Any]
 ) -> Measurement:
     """Return a record with the point it belongs to; its error is not known yet."""
     return Measurement(
         scene=scene.name,
         film=scene.film,
         solver=solver,
-        mesh=kind,
-        loop_edges=mesh.n_b,
-        vertices=mesh.n_v,
+        mesh=place.kind,
+        loop_edges=place.loop_edges,
+        vertices=place.vertices,
         error=math.nan,
         **record,
     )
 
 
 def summarise(
-    scene: Scene, solver: str, kind: str, mesh: DiskMesh, records: list[dict[str, Any]]
+    scene: Scene, solver: str, place: Place, records: list[dict[str, Any]]
 ) -> None:
     """Tell what a point came to, on standard error."""
     cost = f"{np.median([r['cpu'] for r in records]):.4f} s" if records else "too slow"
     state = records[-1]["status"] if records else "given up"
-    place = f"{scene.name}: {solver}, {kind}, {mesh.n_b} edges, {mesh.n_v} vertices"
-    click.echo(f"{place}: {cost}, {state}", err=True)
+    where = f"{solver}, {place.kind}, {place.loop_edges} edges, {place.vertices} vertices"
+    click.echo(f"{scene.name}: {where}: {cost}, {state}", err=True)
 
 
 def write_mesh(path: Path, mesh: DiskMesh) -> None:

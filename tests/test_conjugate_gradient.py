@@ -10,7 +10,8 @@ import pytest
 import shapes
 
 from eulerplateau import conjugate_gradient, newton
-from eulerplateau.conjugate_gradient import smooth_kick
+from eulerplateau.area_film import area
+from eulerplateau.kick import smooth_kick
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.problem import Problem, make_problem
 from eulerplateau.solution import LENGTH_TOLERANCE, RESIDUAL_TOLERANCE, Equilibrium, Status
@@ -69,6 +70,41 @@ def test_every_solver_reaches_the_same_equilibrium_on_every_case(
     np.testing.assert_allclose(
         found["cg"].multipliers, found["newton"].multipliers, atol=1e-2 * tension
     )
+
+
+# Before the plane buckles, a two-lobed film, a longer one: loops of even edges, for which
+# sliding along themselves changes nothing.
+@pytest.mark.parametrize("plane", [False, True])
+@pytest.mark.parametrize("load", [1000.0, 1700.0])
+def test_solvers_reach_the_same_soap_film(load: float, plane: bool) -> None:
+    mesh = shapes.mesh_of(*shapes.disk_points(6))
+    problem = make_problem(mesh, "area", plane=plane)
+    start = shapes.crumpled(mesh, 1e-3) * [1.2, 0.8, 1.0]
+    exact, cg = (
+        solver(problem, start, np.zeros(mesh.n_b), load) for solver in SOLVERS.values()
+    )
+    for found in (cg, exact):
+        assert found.status is equilibria.verdict(found.x[mesh.loop])
+        assert found.residual <= RESIDUAL_TOLERANCE
+        assert found.length_error <= LENGTH_TOLERANCE
+        triangles = mesh.triangles if found.triangles is None else found.triangles
+        assert area(mesh).retiled(triangles).sides(found.x).smallest_angle > 12
+    assert cg.energy == pytest.approx(exact.energy, rel=1e-8)
+
+
+@pytest.mark.parametrize("plane", [False, True])
+def test_uneven_loop_of_a_soap_film_ends_where_its_sliding_was_left(plane: bool) -> None:
+    """Sliding costs what the edges differ by, an error of the mesh: it is not searched."""
+    mesh = irregular()
+    problem = make_problem(mesh, "area", plane=plane)
+    start = shapes.crumpled(mesh, 1e-3)
+    exact, cg = (
+        solver(problem, start, np.zeros(mesh.n_b), 1000.0) for solver in SOLVERS.values()
+    )
+    assert cg.converged
+    assert cg.energy == pytest.approx(exact.energy, rel=1e-6)
+    gap = equilibria.distance_up_to_motion(cg.x[mesh.loop], exact.x[mesh.loop])
+    assert gap < 1e-3
 
 
 def test_accepted_state_is_what_its_record_says(

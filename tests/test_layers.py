@@ -17,13 +17,15 @@ import eulerplateau
 # The layers of docs/architecture.md from the bottom up: modules and subpackages of
 # eulerplateau. A new one needs a place here.
 LAYERS = (
-    "__init__ errors flip_kernels kernels load mesh parameters planar solution",
+    "__init__ errors flip_kernels follow_kernels kernels load mesh parameters planar "
+    "plane_kernels slide_kernels solution",
     "area_film chart condensation conformal curvature dissection film harmonic "
-    "inextensible intersections loop measures meshing motions plane_film repair scaling "
-    "symmetry",
+    "inextensible intersections kick loop measures meshing motions plane_film plane_mesh "
+    "repair scaling symmetry",
     "area_energy cell condensed plane_energy problem tangent",
-    "coarsening conjugate_gradient descent loop_model modes newton plane_newton "
-    "primal_dual shifted_inverse soap_newton stability trial_space trust_region",
+    "coarsening conjugate_gradient descent loop_model modes newton plane_chain "
+    "plane_newton primal_dual shifted_inverse soap_newton stability trial_space "
+    "trust_region",
     "continuation exploration special_points stretch",
     "branch_plots ensemble gallery output planar_plots plots render run_plots runs",
     "__main__ cli",

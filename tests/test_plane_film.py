@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import shapes
 import twins
 from equilibria import distance_up_to_motion
 
-from eulerplateau import newton
+from eulerplateau import conjugate_gradient, newton
 from eulerplateau.curvature import loop_frame
 from eulerplateau.errors import MeshError
 from eulerplateau.inextensible import project_lengths
 from eulerplateau.loop import Loop
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.planar import planar_film
 from eulerplateau.plane_energy import PlaneEnergy
 from eulerplateau.plane_film import PlaneFilm, plane_film, polygon_area, polygon_gradient
 from eulerplateau.plane_newton import settle_in_plane
-from eulerplateau.problem import make_problem
-from eulerplateau.solution import Status
+from eulerplateau.problem import Problem, make_problem
+from eulerplateau.solution import Equilibrium, Status
 from eulerplateau.tangent import tangent_model
+
+Solver = Callable[[Problem, FloatArray, FloatArray, float], Equilibrium]
 
 # Loop edges; multiples of twelve have vertices at all tips and waists of an even loop.
 EDGES = (72, 108, 168, 240)
@@ -164,6 +168,27 @@ def test_three_lobed_saddle_is_reached_from_a_rough_guess() -> None:
     assert found is not None
     exact = planar_film(3, sigma_hat).positions(np.arange(edges) / edges)
     assert distance_up_to_motion(found.x, exact) < 0.002
+
+
+@pytest.mark.parametrize("solve", [newton.solve, conjugate_gradient.solve])
+def test_start_that_lies_face_down_is_turned_over(oval: DiskMesh, solve: Solver) -> None:
+    """Its loop runs clockwise, round a negative area that more tension would enlarge."""
+    problem = make_problem(oval, "area", plane=True)
+    down, up = (
+        solve(problem, oval.x * [1.0, side, 1.0], np.zeros(oval.n_b), 1000.0)
+        for side in (-1.0, 1.0)
+    )
+    assert down.status is up.status is Status.CONVERGED
+    assert down.energy == pytest.approx(up.energy, rel=1e-6)
+    assert down.film_energy > 0
+
+
+def test_film_turned_inside_out_is_no_equilibrium(oval: DiskMesh) -> None:
+    problem = make_problem(oval, "area", plane=True)
+    found = problem.equilibrium(
+        oval.x * [1.0, -1.0, 1.0], np.zeros(oval.n_b), 100.0, Status.CONVERGED
+    )
+    assert problem.judged(found).status is Status.PINCHED
 
 
 def test_film_stays_in_its_plane_and_in_good_triangles(oval: DiskMesh) -> None:

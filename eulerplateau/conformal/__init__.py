@@ -15,6 +15,7 @@ from eulerplateau.conformal.branch import (
 from eulerplateau.conformal.eight import FlatEight, flat_eight
 from eulerplateau.conformal.equilibrium import ConformalFilm, correct, disk
 from eulerplateau.conformal.geometry import Edge, Surface, edge, surface, waist
+from eulerplateau.conformal.relaxation import relax
 from eulerplateau.conformal.spectrum import Mode, modes, morse_index, spectrum
 
 __all__ = [
@@ -40,6 +41,7 @@ __all__ = [
     "make_basis",
     "modes",
     "morse_index",
+    "relax",
     "resolve",
     "spectrum",
     "start",

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eulerplateau.conformal.grading import FloatArray, Grading, dirichlet_form
+from eulerplateau.conformal.grading import FloatArray, Grading
 from eulerplateau.errors import SpecError
 
 # The bending's integrand is no trigonometric polynomial: points per harmonic.
@@ -121,12 +121,14 @@ class Basis:
 
     @cached_property
     def dirichlet(self) -> FloatArray:
-        """Q (size, size), c^T Q c / 2 being the Dirichlet energy of the extension."""
-        form = dirichlet_form(self.grading, len(self.phi))
-        whole = np.zeros((self.size, self.size))
-        for part, (values, _, _) in zip(self.slices, self.matrices, strict=True):
-            whole[part, part] = values.T @ form @ values
-        return whole
+        """Q (size, size), c^T Q c / 2 being the Dirichlet energy of the extension.
+
+        Diagonal: on the cylinder that the disk is to phi, its slit glued phi to -phi, the
+        extension of cos k phi has no slope at the slit and that of sin k phi no value.
+        """
+        even = [kind == "cos" for part in self.columns for kind, _ in part]
+        slope = np.tanh(self.wavenumbers * self.grading.height)
+        return np.diag(pi * self.wavenumbers * np.where(even, slope, 1 / slope))
 
     def curve(self, coefficients: FloatArray) -> Curve:
         """Return the loop at the points of the grid."""

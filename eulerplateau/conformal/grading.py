@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi, sqrt
+from math import inf, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,14 @@ class Grading:
     def stretch(self) -> float:
         """2 K / pi, the elliptic argument per unit of phi."""
         return 1 / _mean(1.0, self.crowding)
+
+    @cached_property
+    def height(self) -> float:
+        """Pi K' / (2 K), of the cylinder that the disk is to phi (sector.py); inf for 1."""
+        if self.crowding == 1.0:
+            return inf
+        k = sqrt((1 - self.crowding) * (1 + self.crowding))
+        return pi / 2 * _mean(1.0, self.crowding) / _mean(1.0, k)
 
     def theta(self, phi: FloatArray) -> FloatArray:
         """Return the conformal angles (...) at phi (...), within pi of them."""

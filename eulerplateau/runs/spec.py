@@ -228,8 +228,6 @@ class RunSpec(Settings):
             raise SpecError(
                 "film.plane", f"needs film.model = 'area'; found {self.film.model!r}"
             )
-        if self.film.plane and self.solver.name != "newton":
-            raise SpecError("solver.name", "should be 'newton' with film.plane = true")
         if self.film.plane and self.output.modes:
             raise SpecError("output.modes", "should be 0 with film.plane = true")
         return self

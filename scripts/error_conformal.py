@@ -1,0 +1,96 @@
+"""What scripts/error_vs_time runs of the film without a mesh: harmonics in place of meshes.
+
+It keeps the symmetry of start and film, n half-turns, and makes use of it; the other
+solvers do not know of it. Its start is the others': the vertices of the rest polygon.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from error_measure import ENOUGH, REPEATS, distance, peak_memory
+from error_scenes import SADDLE, Scene, chain, gyration
+from scipy.interpolate import CubicSpline
+
+from eulerplateau.conformal import ConformalFilm, relax
+from eulerplateau.conformal.sector import make_sector
+from eulerplateau.mesh import FloatArray
+from eulerplateau.solution import Status
+
+CONFORMAL = "conformal"
+LADDER = (4, 6, 8, 12, 16, 24, 32, 48, 64)
+# Vertices of the start for each harmonic, divisible by the lobes.
+_VERTICES = 6
+# Edges of the loop that the shape is measured on; points per edge to find them.
+_EDGES, _FINER = 288, 16
+
+
+def conformal_repeats(scene: Scene, harmonics: int) -> Iterator[dict[str, Any]]:
+    """Yield what each repeat of a point cost and came to; tables are made anew in each."""
+    lobes = scene.lobes
+    assert lobes is not None
+    start = polygon(scene, _VERTICES * harmonics)
+    # Loads the compiled kernels.
+    relax(start, 1.0, harmonics, lobes, scene.in_plane)
+    start_up, began = time.process_time(), time.perf_counter()
+    for repeat in range(REPEATS):
+        cpu, wall = time.process_time(), time.perf_counter()
+        film = relax(start, scene.load, harmonics, lobes, scene.in_plane)
+        cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
+        yield {
+            "repeat": repeat,
+            "set_up": 0.0,
+            "solve": wall,
+            "cpu": cpu,
+            "start_up": start_up,
+            "memory": peak_memory(),
+            **what(scene, film),
+        }
+        if time.perf_counter() - began > ENOUGH:
+            return
+
+
+def unknowns(scene: Scene, harmonics: int) -> int:
+    """Return how many numbers a film is."""
+    assert scene.lobes is not None
+    return make_sector(harmonics, scene.lobes, scene.in_plane).size
+
+
+def polygon(scene: Scene, vertices: int) -> FloatArray:
+    """Return the start (vertices, 3), of length 1: Scene.start of a mesh, its loop only."""
+    corners = chain(dict(scene.polygon), vertices)
+    length = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1).sum()
+    x = np.pad(corners / length, ((0, 0), (0, 1)))
+    if not scene.in_plane:
+        x[:, 2] = SADDLE * x[:, 0] * x[:, 1]
+    return x
+
+
+def what(scene: Scene, film: ConformalFilm | None) -> dict[str, Any]:
+    """Return the part of a record that says what was found."""
+    if film is None:
+        numbers = dict.fromkeys(("value", "gyration", "shape_error"), math.nan)
+        return {**numbers, "iterations": 0, "status": Status.STALLED.value}
+    loop, lengths = equal_edges(film)
+    return {
+        "value": film.energy,
+        "iterations": film.corrections,
+        "gyration": gyration(lengths, loop),
+        "shape_error": distance(scene, lengths, loop),
+        "status": Status.CONVERGED.value,
+    }
+
+
+def equal_edges(film: ConformalFilm) -> tuple[FloatArray, FloatArray]:
+    """Return points (n, 3), equidistant along the loop, and their spacing (n,)."""
+    phi = 2 * np.pi * np.arange(_EDGES * _FINER + 1) / (_EDGES * _FINER)
+    speed = np.linalg.norm(film.basis.at(film.coefficients, phi).x1, axis=1)
+    length = CubicSpline(phi, speed, bc_type="periodic").antiderivative()(phi)
+    places = length[-1] * np.arange(_EDGES) / _EDGES
+    at = CubicSpline(length, phi)(places)
+    loop = film.basis.at(film.coefficients, at).x
+    return loop, np.full(_EDGES, length[-1] / _EDGES)

@@ -266,7 +266,9 @@ def _minimise(
             "maxiter": _ITERATIONS_PER_BASE,
         },
     )
-    if not reached.any():
+    balanced = float(np.abs(forces).max()) <= iterate.tolerance * scale
+    # At rest already: the next tolerance will tell. Else in other unknowns than forces are.
+    if not reached.any() and not (found.success and balanced):
         return None
     return replace(
         iterate,

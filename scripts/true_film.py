@@ -72,6 +72,7 @@ def main(out: Path) -> None:
             "family": {name: family_fit(films[name]) for name in ("twisted", "saddle")},
         }
         held = [landscape(load, twisted[4]) for load in HELD_LOADS]
+    out.mkdir(parents=True, exist_ok=True)
     write(out, rows, numbers)
     draw_all(out / "pictures" / "true-film", films, rows, twist_film.load, held)
     click.echo(json.dumps(numbers, indent=1))

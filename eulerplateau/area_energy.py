@@ -10,11 +10,11 @@ import numpy as np
 from eulerplateau.chart import Chart
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import FloatArray
-from eulerplateau.tangent import stress_stiffness
+from eulerplateau.tangent import SoapEnergy, stress_stiffness
 
 
 @dataclass(frozen=True)
-class AreaEnergy:
+class AreaEnergy(SoapEnergy):
     """E(x_b) = tr(x_b^T B x_b) + load A(x_b), A the least area in a chart (chart.py).
 
     The film's Hessian is a full (3 n_b, 3 n_b) matrix that changes with the loop, unlike
@@ -30,21 +30,6 @@ class AreaEnergy:
     loop: Loop
     chart: Chart
     load: float
-
-    @property
-    def dense(self) -> bool:
-        """Whether matrices of all the loop's displacements are used: always."""
-        return True
-
-    @property
-    def slides(self) -> bool:
-        """Whether the loop may slide along itself: the film only sees its curve."""
-        return True
-
-    @cached_property
-    def bending(self) -> FloatArray:
-        """2 B (n_b, n_b)."""
-        return 2 * self.loop.bending_matrix
 
     @cached_property
     def force_rounding(self) -> float:

@@ -259,13 +259,13 @@ def chart_at(film: AreaFilm, x: FloatArray) -> Chart:
     Re-weighting: the film that is harmonic with the cotangent weights of the last one has
     no more area (Pinkall and Polthier 1993).
     """
+    sides = film.sides(x)
     for _ in range(_REWEIGHTINGS):
         after = x.copy()
-        after[film.interior] = harmonic(film, film.sides(x), x[film.loop])
-        if film.change(x, after) > -_NEAR * film.sides(x).areas.sum():
+        after[film.interior] = harmonic(film, sides, x[film.loop])
+        if film.change(x, after) > -_NEAR * sides.areas.sum():
             break
-        x = after
-    sides = film.sides(x)
+        x, sides = after, film.sides(after)
     carrier = np.zeros((film.n_v, len(film.loop)))
     carrier[film.loop] = np.eye(len(film.loop))
     carrier[film.interior] = harmonic(film, sides, np.eye(len(film.loop)))

@@ -10,11 +10,11 @@ import numpy as np
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import FloatArray
 from eulerplateau.plane_film import polygon_gradient
-from eulerplateau.tangent import stress_stiffness
+from eulerplateau.tangent import SoapEnergy, stress_stiffness
 
 
 @dataclass(frozen=True)
-class PlaneEnergy:
+class PlaneEnergy(SoapEnergy):
     """E(x) = tr(x^T B x) + load * area of the polygon x (n_b, 2).
 
     Attributes
@@ -25,21 +25,6 @@ class PlaneEnergy:
 
     loop: Loop
     load: float
-
-    @property
-    def dense(self) -> bool:
-        """Whether matrices of all the loop's displacements are used: always."""
-        return True
-
-    @property
-    def slides(self) -> bool:
-        """Whether the loop may slide along itself: the film only sees its curve."""
-        return True
-
-    @cached_property
-    def bending(self) -> FloatArray:
-        """2 B (n_b, n_b)."""
-        return 2 * self.loop.bending_matrix
 
     @cached_property
     def force_rounding(self) -> float:

@@ -7,8 +7,6 @@ triangles have become thin.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from eulerplateau.area_film import AreaFilm
@@ -73,7 +71,7 @@ def flipped(film: AreaFilm, x: FloatArray) -> AreaFilm:
     """Return the film with Delaunay's triangles on the vertices x (n_v, 3)."""
     triangles = film.triangles.copy()
     flips = flip_to_delaunay(np.ascontiguousarray(x), triangles, neighbours(triangles))
-    return replace(film, triangles=triangles) if flips else film
+    return film.retiled(triangles) if flips else film
 
 
 def neighbours(triangles: IntArray) -> IntArray:

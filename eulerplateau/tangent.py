@@ -60,6 +60,27 @@ class CondensedEnergy(Protocol):
         """Return whether the energy is still good at x."""
 
 
+class SoapEnergy:
+    """What energies of true soap films have in common, in space and in their plane."""
+
+    loop: Loop
+
+    @property
+    def dense(self) -> bool:
+        """Whether matrices of all the loop's displacements are used: always."""
+        return True
+
+    @property
+    def slides(self) -> bool:
+        """Whether the loop may slide along itself: the film only sees its curve."""
+        return True
+
+    @cached_property
+    def bending(self) -> FloatArray:
+        """2 B (n_b, n_b)."""
+        return 2 * self.loop.bending_matrix
+
+
 @dataclass(frozen=True)
 class LoopEnergy:
     """The condensed energy of one load: E(x_b) = tr(x_b^T A x_b) / 2.

@@ -24,14 +24,14 @@ from eulerplateau.condensation import condense
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import DiskMesh
 from eulerplateau.meshing import MeshSpec, generate
+from eulerplateau.meshing.polygon import ellipse_perimeter
 from eulerplateau.parameters import validate
 from eulerplateau.problem import make_problem
 from eulerplateau.solution import Equilibrium
 from eulerplateau.tangent import stress_stiffness
 
-# The start, an ellipse, fixes which way the lobes lie and nothing else; its perimeter.
-POLYGON = {"kind": "ellipse", "aspect": 2.0}
-AROUND = 9.688448220547675
+# The start, an ellipse, fixes which way the lobes lie and nothing else.
+ASPECT = 2.0
 LOOPS = (64, 96, 128, 192, 256, 384)
 ALGORITHMS = {"Delaunay": 5, "Frontal-Delaunay": 6}
 GRADINGS = (1.0, 3.0)
@@ -83,8 +83,8 @@ def thresholds() -> Iterator[Threshold]:
         for grading in GRADINGS:
             for loop_edges in LOOPS:
                 settings = {
-                    "polygon": POLYGON,
-                    "edge_length": AROUND / loop_edges,
+                    "polygon": {"kind": "ellipse", "aspect": ASPECT},
+                    "edge_length": ellipse_perimeter(ASPECT) / loop_edges,
                     "algorithm": algorithm,
                     "grading": grading,
                 }

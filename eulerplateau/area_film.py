@@ -16,13 +16,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array
 
+from eulerplateau import area_kernels
 from eulerplateau.curvature import unit
 from eulerplateau.dissection import dissect
+from eulerplateau.elimination import Elimination, plan, summed
 from eulerplateau.mesh import DiskMesh, FloatArray, IntArray
-
-_FOLLOWS = np.array([[0.0, -1.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 1.0, 0.0]])
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,8 @@ class Sides:
     @cached_property
     def cotangent(self) -> FloatArray:
         """(e_i . e_j) / (4 A) (n_t, 3, 3): half of Dirichlet's energy, corner by corner."""
-        dots = self.edges @ self.edges.transpose(0, 2, 1)
-        # A triangle without an area pulls at nothing.
-        areas = np.where(self.areas > 0.0, self.areas, np.inf)
-        cotangent: FloatArray = dots / (4 * areas[:, None, None])
+        cotangent = np.empty_like(self.edges)
+        area_kernels.cotangents(self.edges, self.areas, cotangent)
         return cotangent
 
 
@@ -85,11 +83,12 @@ class AreaFilm:
 
     def sides(self, x: FloatArray) -> Sides:
         """Return the triangles of the shape x (n_v, 3)."""
-        corner = x[self.triangles]
-        edges = np.roll(corner, 1, axis=1) - np.roll(corner, -1, axis=1)
-        doubled = np.cross(edges[:, 0], edges[:, 1])
-        size = np.linalg.norm(doubled, axis=1)
-        return Sides(edges, unit(doubled), 0.5 * size)
+        n = len(self.triangles)
+        sides = Sides(np.empty((n, 3, 3)), np.empty((n, 3)), np.empty(n))
+        area_kernels.measure(
+            np.ascontiguousarray(x), self.triangles, sides.edges, sides.normals, sides.areas
+        )
+        return sides
 
     def energy_gradient(self, x: FloatArray, load: float) -> tuple[float, FloatArray]:
         """Return load * area and its gradient (n_v, 3)."""
@@ -98,7 +97,9 @@ class AreaFilm:
 
     def gradient(self, sides: Sides) -> FloatArray:
         """Return the gradient of the area (n_v, 3)."""
-        return self.gather(0.5 * np.cross(sides.normals[:, None, :], sides.edges))
+        gradient = np.zeros((self.n_v, 3))
+        area_kernels.sum_gradient(self.triangles, sides.edges, sides.normals, gradient)
+        return gradient
 
     def gather(self, corners: FloatArray) -> FloatArray:
         """Sum what the corners (n_t, 3, 3) hold at each vertex (n_v, 3)."""
@@ -110,23 +111,9 @@ class AreaFilm:
         return np.stack(columns, axis=1)
 
     def change(self, x: FloatArray, after: FloatArray) -> float:
-        """Return area(after) - area(x) with the relative precision of the difference.
-
-        Triangle by triangle, |c'| - |c| = (c' - c) . (c' + c) / (|c'| + |c|) for c twice
-        the vector area.
-        """
-        first, second = self._doubled(x), self._doubled(after)
-        corner, moved = x[self.triangles], (after - x)[self.triangles]
-        side = corner[:, 1:] - corner[:, :1]
-        shift = moved[:, 1:] - moved[:, :1]
-        difference = np.cross(shift[:, 0], side[:, 1] + shift[:, 1])
-        difference += np.cross(side[:, 0], shift[:, 1])
-        total = np.linalg.norm(first, axis=1) + np.linalg.norm(second, axis=1)
-        return 0.5 * float(((difference * (first + second)).sum(axis=1) / total).sum())
-
-    def _doubled(self, x: FloatArray) -> FloatArray:
-        corner = x[self.triangles]
-        return np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        """Return area(after) - area(x) with the relative precision of the difference."""
+        first, second = np.ascontiguousarray(x), np.ascontiguousarray(after)
+        return area_kernels.change(first, second, self.triangles)
 
     def vertex_normals(self, sides: Sides) -> FloatArray:
         """Return unit normals (n_v, 3), the triangles' weighted by their areas."""
@@ -140,42 +127,47 @@ class AreaFilm:
 
     def normal_hessian(self, sides: Sides, directions: FloatArray) -> csc_array:
         """Return the Hessian (n_v, n_v) for displacements along `directions` (n_v, 3)."""
-        along = directions[self.triangles]
-        across = (along * sides.normals[:, None, :]).sum(axis=2)
-        slide = _FOLLOWS * (
-            along @ np.cross(sides.normals[:, None], along).transpose(0, 2, 1)
+        entries = self._scalar.empty()
+        area_kernels.sum_along(
+            sides.cotangent,
+            sides.normals,
+            self.triangles,
+            directions,
+            self._scalar.place,
+            entries,
         )
-        bend = sides.cotangent * (across[:, :, None] * across[:, None, :])
-        return self._scalar.fill(bend + 0.5 * slide)
+        return self._scalar.matrix(entries)
 
-    def hessian(self, sides: Sides) -> csc_array:
-        """Return the whole Hessian (3 n_v, 3 n_v); vertex v has rows 3 v ... 3 v + 2."""
-        n = sides.normals
-        across = n[:, :, None] * n[:, None, :]
-        turn = np.cross(n[:, None, :], np.eye(3)).transpose(0, 2, 1)
-        blocks = sides.cotangent[:, :, :, None, None] * across[:, None, None]
-        blocks += 0.5 * _FOLLOWS[:, :, None, None] * turn[:, None, None]
-        return self._vector.fill(blocks.transpose(0, 1, 3, 2, 4))
+    def hessian(self, sides: Sides) -> FloatArray:
+        """Return the whole Hessian, a block (3, 3) for each of `pairs` (m, 3, 3)."""
+        blocks = np.zeros((len(self._scalar.indices), 3, 3))
+        place = self._scalar.place
+        area_kernels.sum_hessian(sides.cotangent, sides.normals, place, blocks)
+        return blocks
+
+    @property
+    def pairs(self) -> tuple[IntArray, IntArray]:
+        """The vertices of every entry (m,) of a matrix (n_v, n_v): its row, its column."""
+        return self._scalar.rows, self._scalar.columns
 
     @cached_property
     def pieces(self) -> list[IntArray]:
         """The interior, numbered 0 ... n_i - 1, in pieces to be eliminated one by one."""
-        pattern = self._scalar
-        entries = (np.ones(len(pattern.indices)), pattern.indices, pattern.indptr)
-        graph = csr_array(entries, shape=(self.n_v, self.n_v))
+        graph = self._scalar.matrix(np.ones(len(self._scalar.indices))).tocsr()
         return [
             np.searchsorted(self.interior, piece)
             for piece in dissect(graph, self.loop, self.interior)
         ]
 
     @cached_property
-    def _scalar(self) -> _Pattern:
-        return _Pattern.of(self.triangles, self.n_v)
+    def elimination(self) -> Elimination:
+        """Of the interior from a matrix (n_v, n_v) with an entry for each of `pairs`."""
+        pieces = [self.interior[piece] for piece in self.pieces]
+        return plan(*self.pairs, pieces, self.loop)
 
     @cached_property
-    def _vector(self) -> _Pattern:
-        corners = (3 * self.triangles[:, :, None] + np.arange(3)).reshape(-1, 9)
-        return _Pattern.of(corners, 3 * self.n_v)
+    def _scalar(self) -> _Pattern:
+        return _Pattern.of(self.triangles, self.n_v)
 
 
 @dataclass(frozen=True)
@@ -193,13 +185,32 @@ class _Pattern:
         column = np.tile(elements, elements.shape[1]).ravel()
         entries, place = np.unique(column * n + row, return_inverse=True)
         indptr = np.searchsorted(entries, np.arange(n + 1) * n)
-        return cls(entries % n, indptr, place)
+        size = elements.shape[1]
+        return cls(entries % n, indptr, place.reshape(-1, size, size))
+
+    @property
+    def rows(self) -> IntArray:
+        """The row of every entry."""
+        return self.indices
+
+    @cached_property
+    def columns(self) -> IntArray:
+        """The column of every entry."""
+        return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
+
+    def empty(self) -> FloatArray:
+        """Return zeros for the entries of a matrix with this pattern."""
+        return np.zeros(len(self.indices))
+
+    def matrix(self, entries: FloatArray) -> csc_array:
+        """Return the matrix with these entries."""
+        n = len(self.indptr) - 1
+        return csc_array((entries, self.indices, self.indptr), shape=(n, n))
 
     def fill(self, blocks: FloatArray) -> csc_array:
         """Return the matrix with the element matrices (n_t, m, m) summed into it."""
-        n = len(self.indptr) - 1
-        data = np.bincount(self.place, blocks.ravel(), minlength=len(self.indices))
-        return csc_array((data, self.indices, self.indptr), shape=(n, n))
+        place = self.place.ravel()
+        return self.matrix(summed(place, blocks.ravel(), len(self.indices)))
 
 
 def smallest_angle(edges: FloatArray, areas: FloatArray) -> float:

@@ -7,10 +7,17 @@ a reference shape X with vertex normals n, a loop x_b carries the film
 
 G the harmonic extension, so that the mesh follows its loop, and u the displacements that
 make the area stationary: n_i . dA/dx_i = 0. That is one trial space, fixed as long as the
-chart is, so the area left over is a smooth function of the loop with the exact gradient and
-second variation (eq. by static condensation, as for quadratic films)
+chart is, so the area left over is a smooth function of the loop with the exact gradient
 
-    f = g_b + G^T g_i,      S = T^T H T - (T^T H n) (n^T H n)^-1 (n^T H T),   T = (1, G).
+    f = g_b + G^T g_i.
+
+Its second variation with the interior relaxed (by static condensation, as for quadratic
+films) is
+
+    S = T^T H T - (T^T H n) (n^T H n)^-1 (n^T H T),
+
+where T may be (1, G), or any other way in which the mesh follows its loop smoothly: that
+makes a difference of O(h^2), and none on flat films. See variations.py.
 
 What remains of g_i along the film is a discretisation error. It cannot be removed as well:
 the area does depend, weakly, on where its vertices lie, and falls until triangles vanish.
@@ -26,11 +33,14 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.area_film import AreaFilm, Sides
-from eulerplateau.condensation import Condensation, factorise
-from eulerplateau.harmonic import harmonic
+from eulerplateau.condensation import Condensation
+from eulerplateau.harmonic import follower
 from eulerplateau.mesh import FloatArray
+from eulerplateau.variations import Variations, variations
 
 _STEPS = 30
+# Part of the error that a step with an old factorised Hessian may leave.
+_SLOW = 0.1
 # Rounding of forces of unit tension along an edge, in eps: some twenty of them are summed.
 _ROUNDING = 20 * float(np.finfo(np.float64).eps)
 # Re-weighting brings a rough film near: until it gains less than this part of the area.
@@ -75,15 +85,16 @@ class Relaxed:
         """Gradient of the area with respect to the loop (n_b, 3)."""
         return self.chart.carry(self.gradient)
 
-    @cached_property
-    def response(self) -> FloatArray:
-        """Du / dx_b (n_i, 3 n_b)."""
-        return self._condensed[0]
-
     @property
     def hessian(self) -> FloatArray:
         """Second derivative of the area with respect to the loop (3 n_b, 3 n_b)."""
-        return self._condensed[1]
+        stiffness = self.condensed.stiffness
+        return 0.5 * (stiffness + stiffness.T)
+
+    @cached_property
+    def condensed(self) -> Condensation:
+        """The second variation with the heights eliminated."""
+        return self.chart.variations.condense(self._second)
 
     @property
     def tilt(self) -> float:
@@ -97,29 +108,18 @@ class Relaxed:
 
     def displacement(self, moved: FloatArray) -> FloatArray:
         """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
-        film = self.chart.film
         result = self.chart.follow(moved)
-        heights = self.response @ moved.ravel()
-        result[film.interior] += heights[:, None] * self.chart.normals
+        result[self.chart.film.interior] += self.rise(result)[:, None] * self.chart.normals
         return result
 
+    def rise(self, followed: FloatArray) -> FloatArray:
+        """Return the heights (n_i,) that a film gains whose mesh has moved (n_v, 3)."""
+        forces = self.chart.variations.forces(self._second, followed)
+        return -self.condensed.solve(forces)
+
     @cached_property
-    def _condensed(self) -> tuple[FloatArray, FloatArray]:
-        chart, film = self.chart, self.chart.film
-        n_b, n_i = len(film.loop), len(film.interior)
-        whole = film.hessian(self.sides)
-        carried = np.empty((n_b, 3, n_b, 3))
-        coupling = np.zeros((n_i, n_b, 3))
-        for d in range(3):
-            pull = (whole[:, d::3] @ chart.carrier).reshape(-1, 3, n_b)
-            carried[:, :, :, d] = np.tensordot(chart.carrier, pull, (0, 0))
-            coupling[:, :, d] = np.einsum("ic,icb->ib", chart.normals, pull[film.interior])
-        flat = coupling.reshape(n_i, 3 * n_b)
-        if n_i == 0:
-            return flat, carried.reshape(3 * n_b, 3 * n_b)
-        response: FloatArray = -chart.factorised(self.sides).solve(flat)
-        hessian = carried.reshape(3 * n_b, 3 * n_b) + flat.T @ response
-        return response, 0.5 * (hessian + hessian.T)
+    def _second(self) -> FloatArray:
+        return self.chart.film.hessian(self.sides)
 
 
 @dataclass(frozen=True)
@@ -132,26 +132,25 @@ class Chart:
     x : (n_v, 3) float, the reference shape
     sides : its triangles
     normals : (n_i, 3) float, the directions along which interior vertices move
-    carrier : (n_v, n_b) float, T: how the mesh follows its loop
+    variations : displacements for the second variation
     """
 
     film: AreaFilm
     x: FloatArray
     sides: Sides
     normals: FloatArray
-    carrier: FloatArray
+    variations: Variations
+    _follower: Condensation
     # The last films asked for: a solver comes back to them for force, energy and Hessian.
     _recent: list[Relaxed] = field(default_factory=list, repr=False, compare=False)
 
     def follow(self, moved: FloatArray) -> FloatArray:
         """Return how the mesh (n_v, 3) follows a displacement of the loop (n_b, 3)."""
-        result: FloatArray = self.carrier @ moved
-        return result
+        return self._follower.extend(moved)
 
     def carry(self, gradient: FloatArray) -> FloatArray:
-        """Return T^T g (n_b, 3): what a gradient (n_v, 3) amounts to on the loop."""
-        result: FloatArray = self.carrier.T @ gradient
-        return result
+        """Return g_b + G^T g_i (n_b, 3): what a gradient (n_v, 3) comes to on the loop."""
+        return self._follower.carry(gradient)
 
     def tilt(self, sides: Sides) -> float:
         """Return the smallest cosine between a film's normals and the chart's."""
@@ -185,22 +184,11 @@ class Chart:
         for known in self._recent:
             if np.array_equal(known.x[loop], x_loop):
                 return known
-        heights = self._predicted(x_loop)
-        found = self._newton(x_loop, heights)
+        found = self._newton(x_loop)
         self._recent[:] = [found, *self._recent[:1]]
         return found
 
-    def _predicted(self, x_loop: FloatArray) -> FloatArray:
-        if not self._recent:
-            return np.zeros(len(self.film.interior))
-        last = self._recent[0]
-        heights = last.heights
-        if "_condensed" in last.__dict__:
-            moved = x_loop - last.x[self.film.loop]
-            heights = heights + last.response @ moved.ravel()
-        return heights
-
-    def _newton(self, x_loop: FloatArray, heights: FloatArray) -> Relaxed:
+    def _newton(self, x_loop: FloatArray) -> Relaxed:
         film, inside = self.film, self.film.interior
         base = self.x + self.follow(x_loop - self.x[film.loop])
         base[film.loop] = x_loop
@@ -213,23 +201,41 @@ class Chart:
                 raise LinAlgError("a triangle of the film has folded over")
             return Relaxed(self, x, heights, sides, film.gradient(sides))
 
-        state = at(heights)
-        error = np.inf
+        heights, inverse = self._predicted(base)
+        state, error, fresh = at(heights), np.inf, False
         for _ in range(_STEPS):
             force = (state.gradient[inside] * self.normals).sum(axis=1)
             before, error = error, float(np.abs(force).max(initial=0.0))
             scale = float(np.abs(state.sides.edges).max())
-            stuck = error < 1e-9 * scale and error > 0.25 * before
+            stuck = fresh and error < 1e-9 * scale and error > 0.25 * before
             if error <= _ROUNDING * scale or stuck:
                 return state
-            state = self._descend(state, force, at)
+            fresh = inverse is None or error > _SLOW * before
+            if inverse is None or fresh:
+                inverse = self.variations.stiffness(state.sides)
+            state = self._descend(state, force, inverse, at)
         raise LinAlgError("the film does not come to rest")
 
+    def _predicted(self, base: FloatArray) -> tuple[FloatArray, Condensation | None]:
+        """Return heights (n_i,) to begin with, and the last factorised Hessian if any."""
+        if not self._recent:
+            return np.zeros(len(self.film.interior)), None
+        last = self._recent[0]
+        if "condensed" not in last.__dict__:
+            return last.heights, None
+        moved = base - last.x
+        moved[self.film.interior] += last.heights[:, None] * self.normals
+        return last.heights + last.rise(moved), last.condensed
+
     def _descend(
-        self, state: Relaxed, force: FloatArray, at: Callable[[FloatArray], Relaxed]
+        self,
+        state: Relaxed,
+        force: FloatArray,
+        inverse: Condensation,
+        at: Callable[[FloatArray], Relaxed],
     ) -> Relaxed:
         """Return the film after one Newton step, shortened until the area falls."""
-        step = -self.factorised(state.sides).solve(force[:, None])[:, 0]
+        step = -inverse.solve(force)
         slope = float(force @ step)
         for _ in range(20):
             after = at(state.heights + step)
@@ -244,14 +250,6 @@ class Chart:
         turned = (sides.normals * self.sides.normals).sum(axis=1)
         return bool((sides.areas > 0).all() and (turned > _FOLDED).all())
 
-    def factorised(self, sides: Sides) -> Condensation:
-        """Factorise n^T H n (n_i, n_i); LinAlgError unless positive definite."""
-        film = self.film
-        directions = np.zeros((film.n_v, 3))
-        directions[film.interior] = self.normals
-        matrix = film.normal_hessian(sides, directions)
-        return factorise(matrix[:, film.interior][film.interior], film.pieces)
-
 
 def chart_at(film: AreaFilm, x: FloatArray) -> Chart:
     """Return the chart at a shape (n_v, 3), which is brought near to rest first.
@@ -261,12 +259,12 @@ def chart_at(film: AreaFilm, x: FloatArray) -> Chart:
     """
     sides = film.sides(x)
     for _ in range(_REWEIGHTINGS):
-        after = x.copy()
-        after[film.interior] = harmonic(film, sides, x[film.loop])
+        following = follower(film, sides)
+        after = following.extend(x[film.loop])
         if film.change(x, after) > -_NEAR * sides.areas.sum():
             break
         x, sides = after, film.sides(after)
-    carrier = np.zeros((film.n_v, len(film.loop)))
-    carrier[film.loop] = np.eye(len(film.loop))
-    carrier[film.interior] = harmonic(film, sides, np.eye(len(film.loop)))
-    return Chart(film, x, sides, film.vertex_normals(sides)[film.interior], carrier)
+    else:
+        following = follower(film, sides)
+    normals = film.vertex_normals(sides)[film.interior]
+    return Chart(film, x, sides, normals, variations(film, x, normals), following)

@@ -9,26 +9,25 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.area_film import AreaFilm, Sides
-from eulerplateau.condensation import factorise
+from eulerplateau.condensation import Condensation, factorise
 from eulerplateau.mesh import FloatArray
 
 
-def harmonic(film: AreaFilm, sides: Sides, values: FloatArray) -> FloatArray:
-    """Return the values (n_i, m) inside that are harmonic on a shape, given on the loop."""
-    if len(film.interior) == 0:
-        return np.zeros((0, values.shape[1]))
-    rows = film.cotangent_laplacian(sides)[film.interior]
-    inside = factorise(rows[:, film.interior], film.pieces)
-    return -inside.solve(rows[:, film.loop] @ values)
+def follower(film: AreaFilm, sides: Sides) -> Condensation:
+    """Return what extends values on the loop to those harmonic inside, on a shape.
+
+    Its `carry` takes forces to the loop. LinAlgError where the shape is too degenerate.
+    """
+    return factorise(film.elimination, film.cotangent_laplacian(sides).data)
 
 
 def moved_with(film: AreaFilm, x: FloatArray, x_loop: FloatArray) -> FloatArray:
     """Return the shape x (n_v, 3) after its loop has moved to x_loop (n_b, 3)."""
     moved = x_loop - x[film.loop]
     after = x.copy()
-    after[film.loop] = x_loop
     if moved.any():
-        after[film.interior] += harmonic(film, film.sides(x), moved)
+        after += follower(film, film.sides(x)).extend(moved)
+        after[film.loop] = x_loop
     return after
 
 
@@ -45,9 +44,5 @@ def balance(film: AreaFilm, x: FloatArray) -> FloatArray:
     normals = film.vertex_normals(sides)[inside]
     heights = (gradient[inside] * normals).sum(axis=1)
     forces[inside] = heights[:, None] * normals
-    forces[film.loop] = gradient[film.loop]
-    if len(inside):
-        rows = film.cotangent_laplacian(sides)[inside]
-        share = factorise(rows[:, inside], film.pieces).solve(gradient[inside])
-        forces[film.loop] -= rows[:, film.loop].T @ share
+    forces[film.loop] = follower(film, sides).carry(gradient)
     return forces

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import shapes
+from scipy.sparse import csr_array
 
 from eulerplateau import newton
 from eulerplateau.area_film import AreaFilm
@@ -33,6 +34,17 @@ def irregular_disk(rings: int, jitter: float = 0.15) -> DiskMesh:
     points, triangles = shapes.disk_points(rings, jitter)
     points[-6 * rings :] = shapes.disk_points(rings)[0][-6 * rings :]
     return shapes.mesh_of(points, triangles)
+
+
+def hessian(film: AreaFilm, x: FloatArray) -> csr_array:
+    """The area's Hessian (3 n_v, 3 n_v) at a shape; vertex v has rows 3 v ... 3 v + 2."""
+    i, k = film.pairs
+    row = 3 * i[:, None, None] + np.arange(3)[:, None]
+    column = 3 * k[:, None, None] + np.arange(3)
+    blocks = film.hessian(film.sides(x))
+    row, column, blocks = np.broadcast_arrays(row, column, blocks)
+    entries = (blocks.ravel(), (row.ravel(), column.ravel()))
+    return csr_array(entries, shape=(x.size, x.size))
 
 
 def turn(angle: float) -> FloatArray:

@@ -17,11 +17,11 @@ import eulerplateau
 # The layers of docs/architecture.md from the bottom up: modules and subpackages of
 # eulerplateau. A new one needs a place here.
 LAYERS = (
-    "__init__ errors flip_kernels follow_kernels kernels load mesh parameters planar "
-    "plane_kernels slide_kernels solution",
-    "area_film chart condensation conformal curvature dissection film harmonic "
+    "__init__ area_kernels errors flip_kernels follow_kernels kernels load mesh parameters "
+    "planar plane_kernels slide_kernels solution",
+    "area_film chart condensation conformal curvature dissection elimination film harmonic "
     "inextensible intersections kick loop measures meshing motions plane_film plane_mesh "
-    "repair scaling symmetry",
+    "repair scaling symmetry variations",
     "area_energy cell condensed plane_energy problem tangent",
     "coarsening conjugate_gradient descent loop_model modes newton plane_chain "
     "plane_newton primal_dual shifted_inverse soap_newton stability trial_space "

@@ -10,7 +10,7 @@ from scipy.spatial.distance import pdist, squareform
 
 from eulerplateau import follow_kernels, kernels, plane_kernels, slide_kernels
 from eulerplateau.area_film import area
-from eulerplateau.harmonic import harmonic
+from eulerplateau.harmonic import follower
 from eulerplateau.inextensible import jacobian
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import DiskMesh, FloatArray
@@ -222,7 +222,7 @@ def test_inside_follows_harmonically(oval: DiskMesh) -> None:
     film, x = area(oval), np.ascontiguousarray(oval.x[:, :2])
     move = np.zeros_like(x)
     move[oval.loop] = 0.1 * np.random.default_rng(9).standard_normal((oval.n_b, 2))
-    exact = harmonic(film, film.sides(oval.x), move[oval.loop])
+    exact = follower(film, film.sides(oval.x)).extend(move[oval.loop])[oval.interior]
     left = follow_kernels.spread_inside(x, oval.triangles, oval.interior, move, 1e-13, 500)
     assert left < 1e-13
     np.testing.assert_allclose(move[oval.interior], exact, atol=1e-12)

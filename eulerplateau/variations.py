@@ -1,0 +1,136 @@
+"""The displacements by which a film's second variation is taken, and what it is by them.
+
+They are those of the interior along its normals and those of the loop, which a strip of the
+film along the loop follows. In the continuum the second variation with the interior relaxed
+is the same however the interior follows its loop, as long as it does so smoothly. On a mesh
+it differs by what the area depends on the places of its vertices: by O(h^2) where a strip
+of fixed width follows, by O(h) where none does, by nothing where the film is flat. In a
+strip each vertex has few neighbours that follow others: matrices stay sparse.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from eulerplateau.area_film import AreaFilm, Sides
+from eulerplateau.condensation import Condensation, factorise
+from eulerplateau.elimination import Elimination, plan, summed
+from eulerplateau.mesh import FloatArray, IntArray
+
+# Width of the strip, in L: a circle's radius is 0.16. Where it reaches the middle between
+# two strands those on either side follow different ones, the less the better.
+_WIDTH = 0.1
+
+
+@dataclass(frozen=True)
+class Variations:
+    """Displacements dx_v = n_v u_v + w_v dx_b, u the heights inside, b the leader of v.
+
+    Attributes
+    ----------
+    film : the film
+    normals : (n_v, 3) float, unit inside, zero on the loop
+    leader : (n_v,) int
+        The number on the loop of the vertex that v follows: of the nearest, or itself.
+    weight : (n_v,) float
+        w: 1 on the loop, falling to 0 smoothly across the strip.
+    """
+
+    film: AreaFilm
+    normals: FloatArray
+    leader: IntArray
+    weight: FloatArray
+
+    def stiffness(self, sides: Sides) -> Condensation:
+        """Factorise n . H n (n_i, n_i), what heights meet on a shape, to `solve`.
+
+        Raises LinAlgError unless it is positive definite.
+        """
+        entries = self.film.normal_hessian(sides, self.normals).data
+        return factorise(self._inside, entries[self._chosen[0]])
+
+    def condense(self, blocks: FloatArray) -> Condensation:
+        """Eliminate the heights of a Hessian, given by its blocks (m, 3, 3) for film.pairs.
+
+        What remains is 3 n_b x 3 n_b. Raises LinAlgError unless the area resists heights.
+        """
+        heights, coupling, loop = self._chosen
+        i, k = self.film.pairs
+        along = self._along(blocks)
+        up = np.einsum("pc,pc->p", along[heights], self.normals[k[heights]])
+        across = self.weight[k[coupling], None] * along[coupling]
+        weight = self.weight[i[loop]] * self.weight[k[loop]]
+        kept = weight[:, None, None] * blocks[loop]
+        return factorise(
+            self._elimination, np.concatenate([up, across.ravel(), kept.ravel()])
+        )
+
+    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return n . H m (n_i,): what a displacement m (n_v, 3) does along the heights."""
+        i, k = self.film.pairs
+        pull = np.einsum("pc,pc->p", self._along(blocks), moved[k])
+        return summed(i, pull, self.film.n_v)[self.film.interior]
+
+    def _along(self, blocks: FloatArray) -> FloatArray:
+        """Return n_i . H_ik (m, 3)."""
+        along: FloatArray = np.einsum(
+            "pc,pcd->pd", self.normals[self.film.pairs[0]], blocks
+        )
+        return along
+
+    @cached_property
+    def _chosen(self) -> tuple[IntArray, IntArray, IntArray]:
+        """Which pairs couple heights, a height and the loop, the loop and the loop."""
+        i, k = self.film.pairs
+        inside = np.zeros(self.film.n_v, dtype=bool)
+        inside[self.film.interior] = True
+        follows = self.weight > 0
+        return (
+            np.flatnonzero(inside[i] & inside[k]),
+            np.flatnonzero(inside[i] & follows[k]),
+            np.flatnonzero(follows[i] & follows[k]),
+        )
+
+    @cached_property
+    def _height(self) -> IntArray:
+        """The number of the height of each vertex inside (n_v,)."""
+        height = np.zeros(self.film.n_v, dtype=np.int64)
+        height[self.film.interior] = np.arange(len(self.film.interior))
+        return height
+
+    @cached_property
+    def _inside(self) -> Elimination:
+        heights, height = self._chosen[0], self._height
+        i, k = self.film.pairs
+        none = np.zeros(0, dtype=np.int64)
+        return plan(height[i[heights]], height[k[heights]], self.film.pieces, none)
+
+    @cached_property
+    def _elimination(self) -> Elimination:
+        film, height, (heights, coupling, loop) = self.film, self._height, self._chosen
+        i, k = film.pairs
+        n_i, axes = len(film.interior), np.arange(3)
+        on_loop = n_i + 3 * self.leader[:, None] + axes
+        kept_row = np.repeat(on_loop[i[loop]], 3, axis=1)
+        kept_column = np.tile(on_loop[k[loop]], 3)
+        row = [height[i[heights]], np.repeat(height[i[coupling]], 3), kept_row.ravel()]
+        column = [height[k[heights]], on_loop[k[coupling]].ravel(), kept_column.ravel()]
+        kept = np.arange(n_i, n_i + 3 * len(film.loop))
+        return plan(np.concatenate(row), np.concatenate(column), film.pieces, kept)
+
+
+def variations(film: AreaFilm, x: FloatArray, normals: FloatArray) -> Variations:
+    """Return the variations of a shape x (n_v, 3) with normals inside (n_i, 3)."""
+    from scipy.spatial import cKDTree  # slow to load, and only soap films need it
+
+    loop, inside = film.loop, film.interior
+    distance, nearest = cKDTree(x[loop]).query(x[inside])
+    directions, weight = np.zeros((film.n_v, 3)), np.ones(film.n_v)
+    directions[inside] = normals
+    leader = np.zeros(film.n_v, dtype=np.int64)
+    leader[loop], leader[inside] = np.arange(len(loop)), nearest
+    weight[inside] = np.square(np.maximum(1 - distance / _WIDTH, 0.0))
+    return Variations(film, directions, leader, weight)

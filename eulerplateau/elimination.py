@@ -15,6 +15,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.linalg.lapack import dpotrf, dtrtrs
 
+from eulerplateau.kernels import add_block
 from eulerplateau.mesh import FloatArray, IntArray
 
 
@@ -59,7 +60,7 @@ class _Front:
         n = self.size
         block: FloatArray = summed(self.places, values[self.entries], n * n).reshape(n, n)
         for number, place in self.left:
-            block[place[:, None], place] += remainders.pop(number)
+            add_block(remainders.pop(number), place, block)
         return block
 
 

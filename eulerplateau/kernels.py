@@ -204,3 +204,11 @@ def _squared_distance(x: FloatArray, i: int, j: int) -> float:
     for d in range(x.shape[1]):
         square += (x[i, d] - x[j, d]) ** 2
     return square
+
+
+@njit(cache=True)
+def add_block(block: FloatArray, place: IntArray, total: FloatArray) -> None:
+    """Add a block (m, m) to the rows and columns `place` (m,) of `total` (n, n)."""
+    for i in range(place.shape[0]):
+        for j in range(place.shape[0]):
+            total[place[i], place[j]] += block[i, j]

@@ -1,7 +1,8 @@
-"""What scripts/error_vs_time runs of the film without a mesh: harmonics in place of meshes.
+"""What scripts/error_vs_time runs without a mesh: harmonics in place of meshes.
 
-It keeps the symmetry of start and film, n half-turns, and makes use of it; the other
-solvers do not know of it. Its start is the others': the vertices of the rest polygon.
+In space that is `conformal`, in the plane `tangent angle`. Both keep the symmetry of start
+and film, n half-turns, and make use of it; the other solvers do not know of it. Their start
+is the others': the vertices of the rest polygon.
 """
 
 from __future__ import annotations
@@ -20,26 +21,39 @@ from eulerplateau.conformal import ConformalFilm, relax
 from eulerplateau.conformal.sector import make_sector
 from eulerplateau.mesh import FloatArray
 from eulerplateau.solution import Status
+from eulerplateau.tangent_angle import PlaneLoop, relax_in_plane
 
-CONFORMAL = "conformal"
-LADDER = (4, 6, 8, 12, 16, 24, 32, 48, 64)
+CONFORMAL, TANGENT_ANGLE = "conformal", "tangent angle"
+# Harmonics of the whole loop; in the plane those of a lobe.
+_LADDER = (4, 6, 8, 12, 16, 24, 32, 48, 64)
+_LADDER_IN_PLANE = (2, 3, 4, 6, 8, 12, 16, 24, 32)
 # Vertices of the start for each harmonic, divisible by the lobes.
 _VERTICES = 6
 # Edges of the loop that the shape is measured on; points per edge to find them.
 _EDGES, _FINER = 288, 16
 
 
-def conformal_repeats(scene: Scene, harmonics: int) -> Iterator[dict[str, Any]]:
+def mesh_free(scene: Scene) -> str:
+    """Return the solver's name."""
+    return TANGENT_ANGLE if scene.in_plane else CONFORMAL
+
+
+def ladder(scene: Scene) -> tuple[int, ...]:
+    """Return the harmonics to compute a scene with."""
+    return _LADDER_IN_PLANE if scene.in_plane else _LADDER
+
+
+def mesh_free_repeats(scene: Scene, harmonics: int) -> Iterator[dict[str, Any]]:
     """Yield what each repeat of a point cost and came to; tables are made anew in each."""
-    lobes = scene.lobes
-    assert lobes is not None
-    start = polygon(scene, _VERTICES * harmonics)
+    assert scene.lobes is not None
+    vertices = _VERTICES * harmonics * (scene.lobes if scene.in_plane else 1)
+    start = polygon(scene, vertices)
     # Loads the compiled kernels.
-    relax(start, 1.0, harmonics, lobes, scene.in_plane)
+    relaxed(scene, start, 1.0, harmonics)
     start_up, began = time.process_time(), time.perf_counter()
     for repeat in range(REPEATS):
         cpu, wall = time.process_time(), time.perf_counter()
-        film = relax(start, scene.load, harmonics, lobes, scene.in_plane)
+        film = relaxed(scene, start, scene.load, harmonics)
         cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
         yield {
             "repeat": repeat,
@@ -54,10 +68,20 @@ def conformal_repeats(scene: Scene, harmonics: int) -> Iterator[dict[str, Any]]:
             return
 
 
+def relaxed(
+    scene: Scene, start: FloatArray, load: float, harmonics: int
+) -> ConformalFilm | PlaneLoop | None:
+    """Return the film that a start (vertices, 3) relaxes to, None if it does not."""
+    assert scene.lobes is not None
+    if scene.in_plane:
+        return relax_in_plane(start, load, harmonics, scene.lobes)
+    return relax(start, load, harmonics, scene.lobes)
+
+
 def unknowns(scene: Scene, harmonics: int) -> int:
     """Return how many numbers a film is."""
     assert scene.lobes is not None
-    return make_sector(harmonics, scene.lobes, scene.in_plane).size
+    return harmonics if scene.in_plane else make_sector(harmonics, scene.lobes).size
 
 
 def polygon(scene: Scene, vertices: int) -> FloatArray:
@@ -70,7 +94,7 @@ def polygon(scene: Scene, vertices: int) -> FloatArray:
     return x
 
 
-def what(scene: Scene, film: ConformalFilm | None) -> dict[str, Any]:
+def what(scene: Scene, film: ConformalFilm | PlaneLoop | None) -> dict[str, Any]:
     """Return the part of a record that says what was found."""
     if film is None:
         numbers = dict.fromkeys(("value", "gyration", "shape_error"), math.nan)
@@ -78,15 +102,18 @@ def what(scene: Scene, film: ConformalFilm | None) -> dict[str, Any]:
     loop, lengths = equal_edges(film)
     return {
         "value": film.energy,
-        "iterations": film.corrections,
+        "iterations": film.steps if isinstance(film, PlaneLoop) else film.corrections,
         "gyration": gyration(lengths, loop),
         "shape_error": distance(scene, lengths, loop),
         "status": Status.CONVERGED.value,
     }
 
 
-def equal_edges(film: ConformalFilm) -> tuple[FloatArray, FloatArray]:
+def equal_edges(film: ConformalFilm | PlaneLoop) -> tuple[FloatArray, FloatArray]:
     """Return points (n, 3), equidistant along the loop, and their spacing (n,)."""
+    if isinstance(film, PlaneLoop):
+        flat = film.positions(np.arange(_EDGES) / _EDGES)
+        return np.pad(flat, ((0, 0), (0, 1))), np.full(_EDGES, 1 / _EDGES)
     phi = 2 * np.pi * np.arange(_EDGES * _FINER + 1) / (_EDGES * _FINER)
     speed = np.linalg.norm(film.basis.at(film.coefficients, phi).x1, axis=1)
     length = CubicSpline(phi, speed, bc_type="periodic").antiderivative()(phi)

@@ -15,7 +15,7 @@ from error_scenes import SCENES
 
 COARSE_TO_FINE = ", coarse to fine"
 EXTRAPOLATED = ", extrapolated"
-# The "mesh" of a solver that has none; its loop_edges are harmonics.
+# The "mesh" of a solver that has none; its loop_edges are harmonics, in the plane a lobe's.
 HARMONICS = "harmonics"
 
 

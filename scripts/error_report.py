@@ -31,6 +31,7 @@ MARKERS = {
     "newton, coarse to fine": ("D", "tab:green"),
     "cg": ("s", "tab:blue"),
     "conformal": ("*", "tab:purple"),
+    "tangent angle": ("P", "tab:pink"),
     "evolver": ("^", "tab:orange"),
     "evolver, coarse to fine": ("v", "tab:red"),
     "evolver, gradients": ("x", "tab:brown"),
@@ -49,8 +50,9 @@ def markdown(found: list[Measurement]) -> str:
         "",
         *_times(known),
         "",
-        "`conformal` has harmonics in place of a mesh and keeps, and uses, the start's "
-        "symmetry; it converges exponentially and has no order.",
+        "`conformal`, in space, and `tangent angle`, in the plane, have harmonics in place "
+        "of a mesh, of the whole loop and of a lobe; they keep, and use, the start's "
+        "symmetry, converge exponentially and have no order.",
         "",
         *_orders(known),
         "",
@@ -179,13 +181,15 @@ class Way:
     loop_edges: int
 
 
-def cheapest(known: list[Point], error: float) -> tuple[Way, float] | None:
+def cheapest(known: list[Point], error: float, in_plane: bool) -> tuple[Way, float] | None:
     """Return the cheapest way measured to reach an error, and its worst CPU seconds.
 
-    In every scene of film `area` in space with an exact energy; two meshes may be combined.
-    None if no way reached it in all of them.
+    In every scene of film `area` with an exact energy, in space or in the plane; two meshes
+    may be combined. None if no way reached it in all of them.
     """
-    scenes = [n for n, scene in SCENES.items() if scene.exact and not scene.in_plane]
+    scenes = [
+        n for n, scene in SCENES.items() if scene.exact and scene.in_plane == in_plane
+    ]
     times: dict[Way, dict[str, float]] = {}
     for p in filter(ours, [*known, *extrapolated(known)]):
         m = p.first
@@ -197,9 +201,14 @@ def cheapest(known: list[Point], error: float) -> tuple[Way, float] | None:
 
 def advice(known: list[Point]) -> str:
     """Return one sentence for users: what to use for an error of 1e-3 and of 1e-6."""
+    space, plane = (_advice(known, in_plane) for in_plane in (False, True))
+    return f"{space}; for films kept in their plane: {plane}."
+
+
+def _advice(known: list[Point], in_plane: bool) -> str:
     parts = []
     for error in (1e-3, 1e-6):
-        found = cheapest(known, error)
+        found = cheapest(known, error, in_plane)
         if found is None:
             parts.append(f"an error of {error:.0e} was not reached in every scene")
             continue
@@ -215,7 +224,7 @@ def advice(known: list[Point]) -> str:
         else:
             how += f"{way.loop_edges} loop edges"
         parts.append(f"{wanted} {how} ({seconds:.2g} s)")
-    return "; ".join(parts) + "."
+    return "; ".join(parts)
 
 
 def _short(seconds: float | None) -> str:

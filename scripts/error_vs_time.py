@@ -21,7 +21,14 @@ from typing import Any, NamedTuple
 
 import click
 import numpy as np
-from error_conformal import CONFORMAL, LADDER, conformal_repeats, unknowns
+from error_conformal import (
+    CONFORMAL,
+    TANGENT_ANGLE,
+    ladder,
+    mesh_free,
+    mesh_free_repeats,
+    unknowns,
+)
 from error_measure import ENOUGH, REPEATS, distance, repeated
 from error_records import COARSE_TO_FINE, HARMONICS, Measurement, with_errors, write_csv
 from error_report import draw, markdown
@@ -38,6 +45,7 @@ LEVELS = {"uniform": 4, "graded": 5, "fan": 5, "lattice": 4}
 COARSEST = 36
 # Without its interior a film's loop of 36 edges leads Evolver astray.
 COARSEST_IN_PLANE = 72
+SOLVERS = ("newton", "cg", CONFORMAL, TANGENT_ANGLE)
 
 
 class Place(NamedTuple):
@@ -69,7 +77,7 @@ def main(context: click.Context, names: tuple[str, ...], out: Path) -> None:
 @main.command()
 @click.argument("meshes", nargs=-1, type=click.Path(path_type=Path, exists=True))
 @click.option("--scene", required=True, type=click.Choice(list(SCENES)))
-@click.option("--solver", required=True, type=click.Choice(["newton", "cg", CONFORMAL]))
+@click.option("--solver", required=True, type=click.Choice(SOLVERS))
 @click.option("--harmonics", default=0, help="In place of meshes.")
 def point(meshes: tuple[Path, ...], scene: str, solver: str, harmonics: int) -> None:
     """Measure one point in this process and print its repeats as JSON.
@@ -79,8 +87,8 @@ def point(meshes: tuple[Path, ...], scene: str, solver: str, harmonics: int) -> 
     from threadpoolctl import threadpool_limits
 
     with threadpool_limits(1, user_api="blas"):
-        if solver == CONFORMAL:
-            records = conformal_repeats(SCENES[scene], harmonics)
+        if solver in (CONFORMAL, TANGENT_ANGLE):
+            records = mesh_free_repeats(SCENES[scene], harmonics)
         else:
             sequence = [read_mesh(path) for path in meshes]
             records = repeated(sequence, SCENES[scene], solver)
@@ -108,7 +116,7 @@ def solvers(scene: Scene) -> tuple[str, ...]:
 def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
     """Yield every repeat of every point of a scene."""
     if scene.film == "area" and scene.threshold is None:
-        yield from measure_conformal(scene)
+        yield from measure_mesh_free(scene)
     for kind in kinds(scene):
         coarsest = COARSEST_IN_PLANE if scene.in_plane else COARSEST
         levels = 4 if scene.in_plane else LEVELS[kind]
@@ -130,14 +138,15 @@ def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
             yield from measure_evolver(scene, kind, meshes)
 
 
-def measure_conformal(scene: Scene) -> Iterator[Measurement]:
+def measure_mesh_free(scene: Scene) -> Iterator[Measurement]:
     """Yield every repeat without a mesh."""
-    for harmonics in LADDER:
+    solver = mesh_free(scene)
+    for harmonics in ladder(scene):
         place = Place(HARMONICS, harmonics, unknowns(scene, harmonics))
         options = ("--harmonics", str(harmonics))
-        records = run_point([], scene, CONFORMAL, *options)
-        yield from (as_measurement(scene, CONFORMAL, place, r) for r in records)
-        summarise(scene, CONFORMAL, place, records)
+        records = run_point([], scene, solver, *options)
+        yield from (as_measurement(scene, solver, place, r) for r in records)
+        summarise(scene, solver, place, records)
 
 
 def run_point(

@@ -18,33 +18,28 @@ from eulerplateau.conformal.spectrum import morse_index
 from eulerplateau.errors import SpecError
 from eulerplateau.planar import planar_film
 
-SECTORS = {
-    "planar": (2, True),
-    "twisted": (2, False),
-    "three lobes": (3, True),
-    "four lobes in space": (4, False),
-}
+SECTORS = {"two lobes": 2, "three lobes": 3, "four lobes": 4}
 
 
-def ellipse(aspect: float, points: int, height: float = 0.0) -> FloatArray:
+def ellipse(aspect: float, points: int) -> FloatArray:
     """A start, equidistant in the angle and not in arc length, and of no special size."""
     angle = 2 * pi * np.arange(points) / points
     x, y = aspect * np.cos(angle), np.sin(angle)
-    return np.stack([x, y, height * x * y], axis=1)
+    return np.stack([x, y, 0.1 * x * y], axis=1)
 
 
 def lobed(n: int, points: int) -> FloatArray:
     angle = 2 * pi * np.arange(points) / points
     radius = 1 + 0.2 * np.cos(n * angle)
-    return radius[:, None] * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    x, y, z = radius * np.cos(angle), radius * np.sin(angle), 0.1 * np.sin(n * angle)
+    return np.stack([x, y, z], axis=1)
 
 
-@pytest.mark.parametrize(("load", "height"), [(1600.0, 0.0), (1600.0, 0.1), (2000.0, 0.0)])
-def test_an_ellipse_relaxes_to_the_exact_two_lobes(load: float, height: float) -> None:
+@pytest.mark.parametrize("load", [1600.0, 1800.0])
+def test_an_ellipse_relaxes_to_the_exact_two_lobes(load: float) -> None:
     exact, errors = planar_film(2, load), []
     for harmonics in (8, 16, 32):
-        start = ellipse(2.0, 6 * harmonics, height)
-        film = relax(start, load, harmonics, in_plane=not height)
+        film = relax(ellipse(2.0, 6 * harmonics), load, harmonics)
         assert film is not None
         errors.append(abs(film.energy / exact.energy - 1))
     assert all(after < max(before / 50, 1e-13) for before, after in pairwise(errors))
@@ -53,11 +48,11 @@ def test_an_ellipse_relaxes_to_the_exact_two_lobes(load: float, height: float) -
     assert film.area == pytest.approx(exact.area, rel=shape)
     assert film.beta == pytest.approx(exact.beta_hat, rel=10 * shape)
     assert film.residual < 1e-9
-    assert morse_index(film) == (0 if load < 1855 else 1)
+    assert morse_index(film) == 0
 
 
 def test_an_ellipse_below_48_pi_cubed_relaxes_to_the_disk() -> None:
-    film = relax(ellipse(1.5, 96, 0.1), 1400.0, 16)
+    film = relax(ellipse(1.5, 96), 1400.0, 16)
     assert film is not None
     assert film.energy == pytest.approx(1400 / (4 * pi) + 4 * pi**2, rel=1e-10)
 
@@ -65,7 +60,7 @@ def test_an_ellipse_below_48_pi_cubed_relaxes_to_the_disk() -> None:
 def test_three_lobes_relax_to_the_exact_film() -> None:
     exact, errors = planar_film(3, 4500.0), []
     for harmonics in (24, 48, 96):
-        film = relax(lobed(3, 6 * harmonics), 4500.0, harmonics, lobes=3, in_plane=True)
+        film = relax(lobed(3, 6 * harmonics), 4500.0, harmonics, lobes=3)
         assert film is not None
         errors.append(abs(film.energy / exact.energy - 1))
     assert all(after < before / 20 for before, after in pairwise(errors))
@@ -77,7 +72,7 @@ def test_newtons_method_on_the_whole_loop_confirms_the_film(
     lobes: int, load: float
 ) -> None:
     start = ellipse(2.0, 384) if lobes == 2 else lobed(3, 384)
-    film = relax(start, load, 64, lobes, in_plane=True)
+    film = relax(start, load, 64, lobes)
     assert film is not None
     again = correct(film.basis, film.coefficients, film.beta, load)
     assert again is not None
@@ -88,10 +83,8 @@ def test_newtons_method_on_the_whole_loop_confirms_the_film(
 
 
 def test_a_film_does_not_depend_on_the_size_of_its_start_nor_which_way_it_is_long() -> None:
-    small, large = (
-        relax(s * ellipse(2.0, 96), 1600.0, 16, in_plane=True) for s in (1, 1024)
-    )
-    across = relax(ellipse(0.5, 96), 1600.0, 16, in_plane=True)
+    small, large = (relax(s * ellipse(2.0, 96), 1600.0, 16) for s in (1, 1024))
+    across = relax(ellipse(0.5, 96), 1600.0, 16)
     assert small is not None
     assert large is not None
     assert across is not None
@@ -103,7 +96,7 @@ def test_a_film_does_not_depend_on_the_size_of_its_start_nor_which_way_it_is_lon
 
 
 def test_a_round_start_beyond_the_threshold_leaves_the_disk() -> None:
-    film = relax(ellipse(1.0, 96), 1600.0, 16, in_plane=True)
+    film = relax(ellipse(1.0, 96), 1600.0, 16)
     assert film is not None
     assert film.energy == pytest.approx(planar_film(2, 1600.0).energy, rel=1e-8)
 
@@ -118,15 +111,15 @@ def test_a_start_with_corners_relaxes_too() -> None:
             np.stack([2 * side, -1 + 0 * side], axis=1),
         ]
     )
-    start = np.pad(np.roll(rectangle, -24, axis=0), ((0, 0), (0, 1)))
-    film = relax(start, 1600.0, 48, in_plane=True)
+    x, y = np.roll(rectangle, -24, axis=0).T
+    film = relax(np.stack([x, y, 0.1 * x * y], axis=1), 1600.0, 48)
     assert film is not None
     assert film.energy == pytest.approx(planar_film(2, 1600.0).energy, rel=1e-9)
 
 
 @pytest.fixture(params=SECTORS)
 def sector(request: pytest.FixtureRequest) -> Sector:
-    return make_sector(12, *SECTORS[request.param])
+    return make_sector(12, SECTORS[request.param])
 
 
 def deformed(sector: Sector) -> FloatArray:
@@ -162,7 +155,7 @@ def test_derivatives_have_taylor_slopes_of_two_and_three(sector: Sector) -> None
 
 @pytest.mark.parametrize("crowding", [1.0, 0.5, 0.1, 1e-3, 1e-6])
 def test_harmonics_are_orthogonal_in_the_energy_for_any_crowding(crowding: float) -> None:
-    sector, points = make_sector(6, 2, in_plane=False), 512
+    sector, points = make_sector(6, 2), 512
     phi = 2 * pi * np.arange(points) / points
     form = dirichlet_form(Grading(crowding), points)
     angle = np.outer(phi, sector.k)
@@ -180,13 +173,9 @@ def test_the_nome_gives_the_crowding_back(crowding: float) -> None:
 
 def test_starts_that_lack_the_symmetry_are_refused() -> None:
     shifted = np.roll(ellipse(2.0, 96), 5, axis=0)
-    for start, lobes, in_plane in (
-        (shifted, 2, True),
-        (ellipse(2.0, 96), 3, True),
-        (ellipse(2.0, 96, 0.1), 2, True),
-    ):
+    for start, lobes in ((shifted, 2), (ellipse(2.0, 96), 3)):
         with pytest.raises(SpecError) as refused:
-            relax(start, 1600.0, 16, lobes, in_plane)
+            relax(start, 1600.0, 16, lobes)
         assert refused.value.key == "start"
 
 
@@ -195,4 +184,4 @@ def test_starts_that_lack_the_symmetry_are_refused() -> None:
 )
 def test_too_little_is_refused(harmonics: int, lobes: int, points: int) -> None:
     with pytest.raises(SpecError):
-        relax(ellipse(2.0, points), 1600.0, harmonics, lobes, in_plane=True)
+        relax(ellipse(2.0, points), 1600.0, harmonics, lobes)

@@ -14,9 +14,19 @@ from matplotlib.image import imread
 sys.path.insert(0, str(Path(__file__).parents[1] / "scripts"))
 
 from error_arithmetic import fitted_order, pareto, richardson, seconds_to
-from error_records import Measurement, Point, extrapolated, points, with_errors, write_csv
-from error_report import Way, cheapest, draw
+from error_conformal import mesh_free, mesh_free_repeats
+from error_records import (
+    HARMONICS,
+    Measurement,
+    Point,
+    extrapolated,
+    points,
+    with_errors,
+    write_csv,
+)
+from error_report import MARKERS, Way, cheapest, draw
 from error_scenes import SCENES
+from error_vs_time import solvers
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 4.0])
@@ -96,6 +106,7 @@ def test_coarse_errors_cost_the_fastest_point_and_unreached_ones_have_no_time() 
 
 
 SPACE = [n for n, scene in SCENES.items() if scene.exact and not scene.in_plane]
+PLANE = [n for n, scene in SCENES.items() if scene.in_plane]
 
 
 def measured(scene: str, solver: str, edges: int, cpu: float, value: float) -> Measurement:
@@ -153,11 +164,14 @@ def test_points_of_different_ladders_are_not_combined() -> None:
 def test_cheapest_way_suffices_in_every_scene() -> None:
     """By h^2: 1e-3 needs 36 edges, 1e-4 needs 144, or 36 and 72 together."""
     known = [p for scene in SPACE for p in ladder(scene)]
-    assert cheapest(known, 1e-3) == (Way("newton", "uniform", 36), 36)
-    assert cheapest(known, 1e-4) == (Way("newton, extrapolated", "uniform", 72), 108)
-    assert cheapest(known, 1e-12) is None
+    assert cheapest(known, 1e-3, in_plane=False) == (Way("newton", "uniform", 36), 36)
+    assert cheapest(known, 1e-4, in_plane=False) == (
+        Way("newton, extrapolated", "uniform", 72),
+        108,
+    )
+    assert cheapest(known, 1e-12, in_plane=False) is None
     missing = [p for p in known if p.first.scene != SPACE[0]]
-    assert cheapest(missing, 1e-3) is None
+    assert cheapest(missing, 1e-3, in_plane=False) is None
 
 
 def test_of_two_solvers_the_faster_is_chosen_and_evolver_is_none_of_ours() -> None:
@@ -167,8 +181,43 @@ def test_of_two_solvers_the_faster_is_chosen_and_evolver_is_none_of_ours() -> No
         for solver, pace in (("newton", 2.0), ("cg", 1.0), ("evolver", 0.1))
         for p in ladder(scene, solver, pace)
     ]
-    found = cheapest(known, 1e-3)
+    found = cheapest(known, 1e-3, in_plane=False)
     assert found == (Way("cg", "uniform", 36), 36)
+
+
+def test_films_kept_in_their_plane_have_a_way_of_their_own() -> None:
+    known = [p for scene in SPACE for p in ladder(scene)]
+    assert cheapest(known, 1e-3, in_plane=True) is None
+    for scene in PLANE:
+        answer = SCENES[scene].answer
+        assert answer is not None
+        run = measured(scene, mesh_free(SCENES[scene]), 4, 1e-4, answer * (1 + 1e-5))
+        known += points(with_errors([replace(run, mesh=HARMONICS)]))
+    way = Way("tangent angle", HARMONICS, 4)
+    assert cheapest(known, 1e-3, in_plane=True) == (way, 1e-4)
+    assert cheapest(known, 1e-6, in_plane=True) is None
+
+
+@pytest.mark.parametrize("name", [SPACE[-1], *PLANE])
+def test_without_a_mesh_the_exact_film_is_found(name: str) -> None:
+    scene = SCENES[name]
+    assert scene.answer is not None
+    records = list(mesh_free_repeats(scene, 16))
+    assert {record["status"] for record in records} == {"converged"}
+    assert records[0]["value"] == pytest.approx(scene.answer, rel=1e-8)
+    assert records[0]["shape_error"] < 1e-6
+
+
+def test_where_strands_touch_nothing_is_found_and_the_record_says_so() -> None:
+    touching = replace(SCENES[PLANE[0]], load=3000.0)
+    record = next(mesh_free_repeats(touching, 8))
+    assert record["status"] == "stalled"
+    assert np.isnan(record["value"])
+
+
+def test_every_solver_of_ours_is_drawn() -> None:
+    for scene in SCENES.values():
+        assert {*solvers(scene), mesh_free(scene)} <= MARKERS.keys()
 
 
 def test_repeats_become_their_median_and_failures_are_left_out() -> None:

@@ -59,7 +59,7 @@ class _State:
 
 
 def relax(
-    start: FloatArray, load: float, harmonics: int, lobes: int = 2, in_plane: bool = False
+    start: FloatArray, load: float, harmonics: int, lobes: int = 2
 ) -> ConformalFilm | None:
     """Return the film of least energy downhill from a start, or None if none is reached.
 
@@ -80,7 +80,7 @@ def relax(
     levels = [harmonics]
     while levels[0] >= _FEWEST * _FINER:
         levels.insert(0, -(-levels[0] // _FINER))
-    sectors = [make_sector(level, lobes, in_plane) for level in levels]
+    sectors = [make_sector(level, lobes) for level in levels]
     c = sectors[0].project(start)
     damping = sectors[0].k ** 2 - 1
     for corners in _CORNERS:

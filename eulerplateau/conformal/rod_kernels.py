@@ -8,8 +8,8 @@ A loop x(phi) of any length l stands for the loop of length 1 of its shape, so t
 is left to be held:  F = l b + sigma_hat D / l^2,  b = oint kappa^2 ds. D is diagonal in the
 harmonics: base_j (1 - r)/(1 + r) c_j^2 / 2 with r = sign_j q^k_j (sector.py).
 
-In all of them slopes : (n, 2, d, m), x' and x'' at n points, in d dimensions, of m columns;
-weights : (n,), of the points; k, sign, base, c : (m,); q : the nome.
+In all of them slopes : (n, 2, 3, m), x' and x'' at n points, of m columns; weights : (n,),
+of the points; k, sign, base, c : (m,); q : the nome.
 """
 
 from __future__ import annotations

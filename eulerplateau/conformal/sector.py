@@ -1,7 +1,7 @@
 """A loop with n lobes, by the part of it that its symmetry repeats.
 
 The symmetry: n half-turns about axes in the plane, hence a turn by 2 pi / n about z; of two
-lobes TWISTED, or PLANAR in the plane. No rigid motion keeps it and no conformal map of the
+lobes TWISTED. No rigid motion keeps it and no conformal map of the
 disk, so that a loop's shape is all that is free.
 
 Two lobes crowd their ends (grading.py). The grid's angle phi being elliptic, the disk is a
@@ -23,7 +23,7 @@ from math import exp, log, pi
 
 import numpy as np
 
-from eulerplateau.conformal.basis import PLANAR, TWISTED, Basis, Family
+from eulerplateau.conformal.basis import TWISTED, Basis, Family
 from eulerplateau.conformal.grading import FloatArray, Grading
 from eulerplateau.errors import SpecError
 from eulerplateau.mesh import IntArray
@@ -51,8 +51,8 @@ class Sector:
     ----------
     wave, part : (m,) float and int
         k of every column, and 0 of x, 1 of y, 2 of z, 3 of x and y together.
-    slopes : (n, 2, d, size) float
-        x' and x'' at n points, d being 2 in the plane.
+    slopes : (n, 2, 3, size) float
+        x' and x'' at n points.
     weights : (n,) float
         Of the points, for integrals over the whole loop; the first and the last lie beyond
         the half lobe and count nothing, so that bends at its ends are seen.
@@ -69,11 +69,6 @@ class Sector:
     def size(self) -> int:
         """The number of coefficients."""
         return len(self.wave)
-
-    @property
-    def in_plane(self) -> bool:
-        """Whether there is no z."""
-        return bool(self.slopes.shape[2] == 2)
 
     @cached_property
     def k(self) -> FloatArray:
@@ -99,9 +94,7 @@ class Sector:
     @property
     def family(self) -> Family:
         """The family of bases that holds these loops."""
-        if self.lobes > 2:
-            return _LOBED
-        return PLANAR if self.in_plane else TWISTED
+        return _LOBED if self.lobes > 2 else TWISTED
 
     def turned(self, c: FloatArray) -> FloatArray:
         """Return a loop (size,) with two lobes turned by a right angle about z."""
@@ -138,7 +131,7 @@ class Sector:
         """
         points = len(x)
         top = (points - 1) // 2
-        wave, part = _columns(self.lobes, top, self.in_plane)
+        wave, part = _columns(self.lobes, top)
         series = 2 / points * np.fft.rfft(x, axis=0)[: top + 1]
         k = np.abs(wave).astype(int)
         along = np.where(part == 3, 0.5, 1.0) * series.real[k, 0]
@@ -154,10 +147,9 @@ class Sector:
         np.add.at(same.imag, (k, axis), np.where(part == 0, 0.0, -np.sign(wave) * found))
         rest = np.abs(series - same)[1:]
         if (rest**2).sum() > _ASYMMETRY * (np.abs(series[1:]) ** 2).sum():
-            kept = "in the plane " if self.in_plane else ""
             raise SpecError(
                 "start",
-                f"lacks a symmetry; should have {self.lobes} lobes {kept}alike, the first "
+                f"lacks a symmetry; should have {self.lobes} lobes alike, the first "
                 "point at the tip on the axis of x",
             )
         kept_columns: FloatArray = found[k <= self.harmonics]
@@ -170,40 +162,37 @@ class Sector:
         return found
 
 
-def make_sector(harmonics: int, lobes: int, in_plane: bool) -> Sector:
+def make_sector(harmonics: int, lobes: int) -> Sector:
     """Return the sector; raises SpecError unless harmonics >= 4 and lobes >= 2."""
     if harmonics < 4:
         raise SpecError("harmonics", f"found {harmonics}; should be 4 or more")
     if lobes < 2:
         raise SpecError("lobes", f"found {lobes}; should be 2 or more")
-    wave, part = _columns(lobes, harmonics, in_plane)
+    wave, part = _columns(lobes, harmonics)
     points = max(-(-_POINTS * harmonics // (2 * lobes)), _FEWEST_POINTS)
     phi = (np.arange(-1, points + 1) + 0.5) * pi / (lobes * points)
     angle = phi[:, None] * wave
     cosine, sine = np.cos(angle), np.sin(angle)
-    slopes = np.zeros((len(phi), 2, 2 if in_plane else 3, len(wave)))
+    slopes = np.zeros((len(phi), 2, 3, len(wave)))
     along, across, up = (part == 0) | (part == 3), (part == 1) | (part == 3), part == 2
     for axis, (first, on) in enumerate(((-sine, along), (cosine, across), (cosine, up))):
         second = -cosine if axis == 0 else -sine
-        if on.any():
-            slopes[:, 0, axis, on] = (wave * first)[:, on]
-            slopes[:, 1, axis, on] = (wave**2 * second)[:, on]
+        slopes[:, 0, axis, on] = (wave * first)[:, on]
+        slopes[:, 1, axis, on] = (wave**2 * second)[:, on]
     weights = np.full(len(phi), 2 * pi / points)
     weights[[0, -1]] = 0.0
     return Sector(lobes, harmonics, wave, part, slopes, weights)
 
 
-def _columns(lobes: int, harmonics: int, in_plane: bool) -> tuple[FloatArray, IntArray]:
+def _columns(lobes: int, harmonics: int) -> tuple[FloatArray, IntArray]:
     """Return the wave and the part (m,) of every column; see Sector."""
     k = np.arange(1, harmonics + 1)
     both = np.concatenate([-k[::-1], k])
     if lobes == 2:
-        waves = [k[k % 2 == 1], k[k % 2 == 1]]
-        parts = [0, 1]
+        waves, parts = [k[k % 2 == 1], k[k % 2 == 1]], [0, 1]
     else:
         waves, parts = [both[both % lobes == 1]], [3]
-    if not in_plane:
-        waves, parts = [*waves, k[k % lobes == 0]], [*parts, 2]
+    waves, parts = [*waves, k[k % lobes == 0]], [*parts, 2]
     part = np.concatenate(
         [np.full(len(w), number) for w, number in zip(waves, parts, strict=True)]
     )

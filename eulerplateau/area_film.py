@@ -20,7 +20,7 @@ from scipy.sparse import csc_array
 
 from eulerplateau import area_kernels
 from eulerplateau.curvature import unit
-from eulerplateau.dissection import dissect
+from eulerplateau.dissection import LARGEST, dissect
 from eulerplateau.elimination import Elimination, plan, summed
 from eulerplateau.mesh import DiskMesh, FloatArray, IntArray
 
@@ -153,10 +153,18 @@ class AreaFilm:
     @cached_property
     def pieces(self) -> list[IntArray]:
         """The interior, numbered 0 ... n_i - 1, in pieces to be eliminated one by one."""
+        return self._dissected(LARGEST)
+
+    @cached_property
+    def small_pieces(self) -> list[IntArray]:
+        """The same in smaller ones, for three unknowns per vertex."""
+        return self._dissected(LARGEST // 3)
+
+    def _dissected(self, largest: int) -> list[IntArray]:
         graph = self._scalar.matrix(np.ones(len(self._scalar.indices))).tocsr()
         return [
             np.searchsorted(self.interior, piece)
-            for piece in dissect(graph, self.loop, self.interior)
+            for piece in dissect(graph, self.loop, self.interior, largest)
         ]
 
     @cached_property

@@ -1,7 +1,7 @@
 """A soap film as a function of its loop: the interior eliminated near one shape.
 
-Sliding inside the film costs nothing, so only normal displacements are unknowns there. Near
-a reference shape X with vertex normals n, a loop x_b carries the film
+Sliding inside a flat film costs nothing, so only normal displacements are unknowns there.
+Near a reference shape X with vertex normals n, a loop x_b carries the film
 
     x_i = X_i + G (x_b - X_b) + n_i u_i,
 
@@ -19,8 +19,9 @@ films) is
 where T may be (1, G), or any other way in which the mesh follows its loop smoothly: that
 makes a difference of O(h^2), and none on flat films. See variations.py.
 
-What remains of g_i along the film is a discretisation error. It cannot be removed as well:
-the area does depend, weakly, on where its vertices lie, and falls until triangles vanish.
+What remains of g_i along a curved film is a discretisation error: the area does depend,
+weakly, on where its vertices lie. Near a discrete minimal surface (minimal.py) it is
+removed as well: u are then all displacements inside, g_i = 0, f = g_b, and S is exact.
 """
 
 from __future__ import annotations
@@ -36,13 +37,13 @@ from eulerplateau.area_film import AreaFilm, Sides
 from eulerplateau.condensation import Condensation
 from eulerplateau.harmonic import follower
 from eulerplateau.mesh import FloatArray
-from eulerplateau.variations import Variations, variations
+from eulerplateau.variations import Free, Variations, along_normals
 
 _STEPS = 30
 # Part of the error that a step with an old factorised Hessian may leave.
 _SLOW = 0.1
 # Rounding of forces of unit tension along an edge, in eps: some twenty of them are summed.
-_ROUNDING = 20 * float(np.finfo(np.float64).eps)
+ROUNDING = 20 * float(np.finfo(np.float64).eps)
 # Re-weighting brings a rough film near: until it gains less than this part of the area.
 _NEAR = 1e-3
 _REWEIGHTINGS = 6
@@ -64,14 +65,14 @@ class Relaxed:
     Attributes
     ----------
     x : (n_v, 3) float
-    heights : (n_i,) float, u
+    u : (n_u,) float, how far the interior has moved from where it follows the loop
     sides : its triangles
     gradient : (n_v, 3) float, of the area
     """
 
     chart: Chart
     x: FloatArray
-    heights: FloatArray
+    u: FloatArray
     sides: Sides
     gradient: FloatArray
 
@@ -93,7 +94,7 @@ class Relaxed:
 
     @cached_property
     def condensed(self) -> Condensation:
-        """The second variation with the heights eliminated."""
+        """The second variation with the interior eliminated."""
         return self.chart.variations.condense(self._second)
 
     @property
@@ -103,17 +104,19 @@ class Relaxed:
 
     @property
     def central(self) -> bool:
-        """Whether the film's normals are its chart's."""
-        return self.tilt > _NO_TILT
+        """Whether the film is at rest in the chart made at its own shape."""
+        return isinstance(self.chart.variations, Free) or self.tilt > _NO_TILT
 
     def displacement(self, moved: FloatArray) -> FloatArray:
         """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
         result = self.chart.follow(moved)
-        result[self.chart.film.interior] += self.rise(result)[:, None] * self.chart.normals
+        result[self.chart.film.interior] += self.chart.variations.displaced(
+            self.response(result)
+        )
         return result
 
-    def rise(self, followed: FloatArray) -> FloatArray:
-        """Return the heights (n_i,) that a film gains whose mesh has moved (n_v, 3)."""
+    def response(self, followed: FloatArray) -> FloatArray:
+        """Return how u changes (n_u,) on a film whose mesh has moved (n_v, 3)."""
         forces = self.chart.variations.forces(self._second, followed)
         return -self.condensed.solve(forces)
 
@@ -131,8 +134,8 @@ class Chart:
     film : the film
     x : (n_v, 3) float, the reference shape
     sides : its triangles
-    normals : (n_i, 3) float, the directions along which interior vertices move
-    variations : displacements for the second variation
+    normals : (n_i, 3) float
+    variations : how interior vertices move: along these normals, or freely
     """
 
     film: AreaFilm
@@ -193,22 +196,26 @@ class Chart:
         base = self.x + self.follow(x_loop - self.x[film.loop])
         base[film.loop] = x_loop
 
-        def at(heights: FloatArray) -> Relaxed:
+        def at(u: FloatArray) -> Relaxed | None:
             x = base.copy()
-            x[inside] += heights[:, None] * self.normals
+            x[inside] += self.variations.displaced(u)
             sides = film.sides(x)
             if not self.unfolded(sides):
-                raise LinAlgError("a triangle of the film has folded over")
-            return Relaxed(self, x, heights, sides, film.gradient(sides))
+                return None
+            return Relaxed(self, x, u, sides, film.gradient(sides))
 
-        heights, inverse = self._predicted(base)
-        state, error, fresh = at(heights), np.inf, False
+        u, inverse = self._predicted(base)
+        state, error, fresh = at(u), np.inf, False
+        if state is None and self._recent:
+            state = at(self._recent[0].u)
+        if state is None:
+            raise LinAlgError("a triangle of the film has folded over")
         for _ in range(_STEPS):
-            force = (state.gradient[inside] * self.normals).sum(axis=1)
+            force = self.variations.work(state.gradient)
             before, error = error, float(np.abs(force).max(initial=0.0))
             scale = float(np.abs(state.sides.edges).max())
             stuck = fresh and error < 1e-9 * scale and error > 0.25 * before
-            if error <= _ROUNDING * scale or stuck:
+            if error <= ROUNDING * scale or stuck:
                 return state
             fresh = inverse is None or error > _SLOW * before
             if inverse is None or fresh:
@@ -217,30 +224,30 @@ class Chart:
         raise LinAlgError("the film does not come to rest")
 
     def _predicted(self, base: FloatArray) -> tuple[FloatArray, Condensation | None]:
-        """Return heights (n_i,) to begin with, and the last factorised Hessian if any."""
+        """Return u (n_u,) to begin with, and the last factorised Hessian if any."""
         if not self._recent:
-            return np.zeros(len(self.film.interior)), None
+            return np.zeros(self.variations.size), None
         last = self._recent[0]
         if "condensed" not in last.__dict__:
-            return last.heights, None
+            return last.u, None
         moved = base - last.x
-        moved[self.film.interior] += last.heights[:, None] * self.normals
-        return last.heights + last.rise(moved), last.condensed
+        moved[self.film.interior] += self.variations.displaced(last.u)
+        return last.u + last.response(moved), last.condensed
 
     def _descend(
         self,
         state: Relaxed,
         force: FloatArray,
         inverse: Condensation,
-        at: Callable[[FloatArray], Relaxed],
+        at: Callable[[FloatArray], Relaxed | None],
     ) -> Relaxed:
         """Return the film after one Newton step, shortened until the area falls."""
         step = -inverse.solve(force)
         slope = float(force @ step)
         for _ in range(20):
-            after = at(state.heights + step)
-            gained = self.film.change(state.x, after.x)
-            if gained <= 0.1 * slope or abs(slope) < 1e-15 * state.area:
+            after = at(state.u + step)
+            small = abs(slope) < 1e-15 * state.area
+            if after and (small or self.film.change(state.x, after.x) <= 0.1 * slope):
                 return after
             step, slope = 0.5 * step, 0.5 * slope
         raise LinAlgError("no step makes the film smaller")
@@ -251,8 +258,11 @@ class Chart:
         return bool((sides.areas > 0).all() and (turned > _FOLDED).all())
 
 
-def chart_at(film: AreaFilm, x: FloatArray) -> Chart:
+def chart_at(film: AreaFilm, x: FloatArray, free: bool = False) -> Chart:
     """Return the chart at a shape (n_v, 3), which is brought near to rest first.
+
+    free : whether vertices inside may move freely, which takes a discrete minimal surface
+    (minimal.py): on another film not all displacements are resisted.
 
     Re-weighting: the film that is harmonic with the cotangent weights of the last one has
     no more area (Pinkall and Polthier 1993).
@@ -267,4 +277,5 @@ def chart_at(film: AreaFilm, x: FloatArray) -> Chart:
     else:
         following = follower(film, sides)
     normals = film.vertex_normals(sides)[film.interior]
-    return Chart(film, x, sides, normals, variations(film, x, normals), following)
+    variations = Free(film) if free else along_normals(film, x, normals)
+    return Chart(film, x, sides, normals, variations, following)

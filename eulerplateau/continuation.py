@@ -152,8 +152,18 @@ def recentred(point: BranchPoint, settings: Settings) -> BranchPoint:
     """Return the point in a problem made anew at its film, if the film has turned."""
     if loop_energy(point.problem, point.load).holds(point.x):
         return point
-    there = point.problem.near(point.film)
-    found = correct(there, point.x, point.load, point.direction, settings)
+    return _anew(point, point.problem.near(point.film), settings)
+
+
+def freed(point: BranchPoint, settings: Settings) -> BranchPoint:
+    """Return the point with its soap film a minimal surface, where that is curved."""
+    there = point.problem.freed(point.film)
+    return point if there is point.problem else _anew(point, there, settings)
+
+
+def _anew(point: BranchPoint, problem: Problem, settings: Settings) -> BranchPoint:
+    """Return the point in another problem; itself if it is not found there."""
+    found = correct(problem, point.x, point.load, point.direction, settings)
     return point if found is None else replace(found, arclength=point.arclength)
 
 

@@ -13,19 +13,22 @@ from scipy.sparse.csgraph import breadth_first_order
 from eulerplateau.mesh import IntArray
 
 # Pieces of this many vertices are dense matrices that BLAS multiplies well.
-_PIECE = 128
+LARGEST = 128
 # Directions along which a piece may be cut.
 _LANDMARKS = 8
 
 
-def dissect(graph: csr_array, around: IntArray, inside: IntArray) -> list[IntArray]:
+def dissect(
+    graph: csr_array, around: IntArray, inside: IntArray, largest: int = LARGEST
+) -> list[IntArray]:
     """Cut the vertices `inside` a graph (n, n) into parts, to be eliminated in this order.
 
     Vertices of two parts are neighbours only if one of the parts separates the other from
     the rest. Distances are counted in edges, from landmarks among the vertices `around`:
-    vertices at one distance from a landmark separate the nearer from the farther.
+    vertices at one distance from a landmark separate the nearer from the farther. Pieces
+    have up to `largest` vertices.
     """
-    if len(inside) <= _PIECE:
+    if len(inside) <= largest:
         return [inside] if len(inside) else []
     landmarks = around[np.linspace(0, len(around), _LANDMARKS, endpoint=False, dtype=int)]
     distance = np.stack([_edges_away(graph, v)[inside] for v in landmarks])
@@ -40,7 +43,7 @@ def dissect(graph: csr_array, around: IntArray, inside: IntArray) -> list[IntArr
         # Separators keep the number of the piece they cut.
         piece[active] = np.where(side == 0, piece[active], 2 * piece[active] + (side > 0))
         active = active[side != 0]
-        large = np.bincount(piece[active], minlength=1) > _PIECE
+        large = np.bincount(piece[active], minlength=1) > largest
         active = active[large[piece[active]]]
     order = np.argsort(-piece, kind="stable")
     cuts = np.flatnonzero(np.diff(piece[order])) + 1

@@ -20,6 +20,7 @@ from eulerplateau.film import FILMS, Film
 from eulerplateau.harmonic import balance
 from eulerplateau.loop import Loop
 from eulerplateau.mesh import DiskMesh, FloatArray, IntArray
+from eulerplateau.minimal import is_flat, minimal
 from eulerplateau.motions import sliding, without
 from eulerplateau.plane_film import PlaneFilm, plane_film
 from eulerplateau.repair import repaired
@@ -41,6 +42,8 @@ class Problem:
     centre : (n_v, 3) float
         The shape near which a soap film is sought (chart.py); films of fixed weights need
         none.
+    free : bool
+        Whether that is a discrete minimal surface, whose vertices are free to move.
     """
 
     film: Film | AreaFilm | PlaneFilm
@@ -48,6 +51,7 @@ class Problem:
     loop_vertices: IntArray
     interior: IntArray
     centre: FloatArray | None = None
+    free: bool = False
 
     @property
     def n_v(self) -> int:
@@ -63,9 +67,8 @@ class Problem:
         if isinstance(self.film, PlaneFilm):
             raise TypeError("a film kept in its plane is not condensed")
         if isinstance(self.film, AreaFilm):
-            return chart_at(
-                self.film, self.film.rest if self.centre is None else self.centre
-            )
+            centre = self.film.rest if self.centre is None else self.centre
+            return chart_at(self.film, centre, self.free)
         laplacian = self.film.laplacian(self.n_v)
         return condense(laplacian, self.loop_vertices, self.interior)
 
@@ -73,14 +76,32 @@ class Problem:
         """Return the problem with its film sought near a shape (n_v, 3).
 
         Thin triangles of a soap film are replaced by better ones: `centre` is then that
-        shape with other vertices inside.
+        shape with other vertices inside; of a free one by those of a minimal surface.
         """
         film = self.film
         if not isinstance(film, AreaFilm):
             return self
+        if self.free and (freed := self.freed(x)) is not self:
+            return freed
         if film.sides(x).smallest_angle < THIN:
             film, x = repaired(film, x)
-        return replace(self, film=film, centre=x)
+        return replace(self, film=film, centre=x, free=False)
+
+    def freed(self, x: FloatArray) -> Problem:
+        """Return the problem with its film sought near the minimal surface next to x.
+
+        The problem itself where there is none, and where the film is flat, its vertices
+        may lie anywhere.
+        """
+        film = self.film
+        if not isinstance(film, AreaFilm) or is_flat(film, x):
+            return self
+        found = minimal(film, x)
+        return (
+            self
+            if found is None
+            else replace(self, film=found[0], centre=found[1], free=True)
+        )
 
     def at(self, x: FloatArray) -> Problem:
         """Return the problem with its film sought near x (n_v, 3), its triangles kept."""
@@ -158,8 +179,10 @@ class Problem:
         self, x: FloatArray, multipliers: FloatArray, load: float, status: Status
     ) -> Equilibrium:
         """Record a shape with all its numbers computed by the kernels on the full mesh."""
-        film = self.film_energy(x, load)[0]
+        film, pull = self.film_energy(x, load)
         bending = self.bending_energy(x)[0]
+        pulls = np.abs(pull).max(axis=1)
+        inside, strongest = pulls[self.interior].max(initial=0.0), pulls.max()
         return Equilibrium(
             x=x,
             multipliers=multipliers,
@@ -168,6 +191,7 @@ class Problem:
             film_energy=film,
             bending_energy=bending,
             residual=self.residual(x, multipliers, load),
+            film_residual=float(inside / strongest) if strongest > 0.0 else 0.0,
             length_error=self.length_error(x),
             iterations=0,
             seconds=0.0,
@@ -186,6 +210,7 @@ class Problem:
             film_energy=np.nan,
             bending_energy=np.nan,
             residual=np.nan,
+            film_residual=np.nan,
             length_error=np.nan,
             iterations=0,
             seconds=0.0,

@@ -60,6 +60,8 @@ class Equilibrium:
         The film's own (load.py).
     residual : float
         |g_bending + g_film + J^T lambda|_inf over the largest of the three terms' |.|_inf.
+    film_residual : float
+        The largest force of the film on a vertex inside over the largest on any.
     length_error : float
         max |l_v / s_v - 1| over the loop's edges.
     n_unstable, n_neutral, lowest_eigenvalue :
@@ -75,6 +77,7 @@ class Equilibrium:
     film_energy: float
     bending_energy: float
     residual: float
+    film_residual: float
     length_error: float
     iterations: int
     seconds: float

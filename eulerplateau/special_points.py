@@ -22,6 +22,7 @@ from eulerplateau.continuation import (
     Settings,
     advance,
     correct,
+    freed,
     load_derivative,
     make_direction,
 )
@@ -118,7 +119,7 @@ def branches_from(special: SpecialPoint, settings: Settings) -> Iterator[BranchP
     for direction in (away, away.reversed()):
         found = _step_along(special.point, direction, _SWITCHING_STEP, settings)
         if found is not None:
-            yield replace(found, arclength=_SWITCHING_STEP)
+            yield replace(freed(found, settings), arclength=_SWITCHING_STEP)
 
 
 def _turn(stretch: Stretch) -> SpecialPoint | None:

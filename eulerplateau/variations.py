@@ -1,19 +1,17 @@
-"""The displacements by which a film's second variation is taken, and what it is by them.
+"""The displacements by which a film is varied, and what its second variation is by them.
 
-They are those of the interior along its normals and those of the loop, which a strip of the
-film along the loop follows. In the continuum the second variation with the interior relaxed
-is the same however the interior follows its loop, as long as it does so smoothly. On a mesh
-it differs by what the area depends on the places of its vertices: by O(h^2) where a strip
-of fixed width follows, by O(h) where none does, by nothing where the film is flat. In a
-strip each vertex has few neighbours that follow others: matrices stay sparse.
+Of its interior they are the heights along normals, or all there are (`Free`); of its loop
+all. What is inside is eliminated.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from eulerplateau.area_film import AreaFilm, Sides
 from eulerplateau.condensation import Condensation, factorise
@@ -23,11 +21,53 @@ from eulerplateau.mesh import FloatArray, IntArray
 # Width of the strip, in L: a circle's radius is 0.16. Where it reaches the middle between
 # two strands those on either side follow different ones, the less the better.
 _WIDTH = 0.1
+# A stiffness that flat pieces offer to sliding inside them, which would cost nothing.
+STILL = 1e-12
+# Where it resists something less than nothing more is added: at first the least, then so
+# many times as much, up to a thousand times what its sides offer to bending.
+LEAST, STIFFER, _STIFFEST = 1e-7, 4.0, 1e3
+_AXES = np.arange(3)
+
+
+class Variations(Protocol):
+    """How the interior of a film may move: n_u unknowns."""
+
+    @property
+    def size(self) -> int:
+        """n_u."""
+
+    def displaced(self, u: FloatArray) -> FloatArray:
+        """Return the displacement (n_i, 3) of unknowns (n_u,)."""
+
+    def work(self, gradient: FloatArray) -> FloatArray:
+        """Return what a gradient (n_v, 3) is by the unknowns (n_u,)."""
+
+    def stiffness(self, sides: Sides) -> Condensation:
+        """Factorise the Hessian by the unknowns on a shape (n_u, n_u), to `solve`.
+
+        Raises LinAlgError unless it is positive definite.
+        """
+
+    def condense(self, blocks: FloatArray) -> Condensation:
+        """Eliminate the unknowns of a Hessian, given by its blocks (m, 3, 3) of film.pairs.
+
+        What remains is 3 n_b x 3 n_b. Raises LinAlgError unless the area resists them.
+        """
+
+    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return what a displacement (n_v, 3) of all does along the unknowns (n_u,)."""
 
 
 @dataclass(frozen=True)
-class Variations:
+class AlongNormals:
     """Displacements dx_v = n_v u_v + w_v dx_b, u the heights inside, b the leader of v.
+
+    A strip of the film follows the loop. In the continuum the second variation with the
+    interior relaxed is the same however the interior follows its loop, as long as it does
+    so smoothly. On a mesh it differs by what the area depends on the places of its
+    vertices: by O(h^2) where a strip of fixed width follows, by O(h) where none does, by
+    nothing where the film is flat. In a strip each vertex has few neighbours that follow
+    others: matrices stay sparse.
 
     Attributes
     ----------
@@ -44,19 +84,28 @@ class Variations:
     leader: IntArray
     weight: FloatArray
 
-    def stiffness(self, sides: Sides) -> Condensation:
-        """Factorise n . H n (n_i, n_i), what heights meet on a shape, to `solve`.
+    @property
+    def size(self) -> int:
+        """One for each vertex inside."""
+        return len(self.film.interior)
 
-        Raises LinAlgError unless it is positive definite.
-        """
+    def displaced(self, u: FloatArray) -> FloatArray:
+        """Return n u (n_i, 3)."""
+        return u[:, None] * self.normals[self.film.interior]
+
+    def work(self, gradient: FloatArray) -> FloatArray:
+        """Return n . g (n_i,)."""
+        inside = self.film.interior
+        along: FloatArray = (gradient[inside] * self.normals[inside]).sum(axis=1)
+        return along
+
+    def stiffness(self, sides: Sides) -> Condensation:
+        """Factorise n . H n (n_i, n_i)."""
         entries = self.film.normal_hessian(sides, self.normals).data
         return factorise(self._inside, entries[self._chosen[0]])
 
     def condense(self, blocks: FloatArray) -> Condensation:
-        """Eliminate the heights of a Hessian, given by its blocks (m, 3, 3) for film.pairs.
-
-        What remains is 3 n_b x 3 n_b. Raises LinAlgError unless the area resists heights.
-        """
+        """Eliminate the heights."""
         heights, coupling, loop = self._chosen
         i, k = self.film.pairs
         along = self._along(blocks)
@@ -69,7 +118,7 @@ class Variations:
         )
 
     def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
-        """Return n . H m (n_i,): what a displacement m (n_v, 3) does along the heights."""
+        """Return n . H m (n_i,)."""
         i, k = self.film.pairs
         pull = np.einsum("pc,pc->p", self._along(blocks), moved[k])
         return summed(i, pull, self.film.n_v)[self.film.interior]
@@ -85,8 +134,7 @@ class Variations:
     def _chosen(self) -> tuple[IntArray, IntArray, IntArray]:
         """Which pairs couple heights, a height and the loop, the loop and the loop."""
         i, k = self.film.pairs
-        inside = np.zeros(self.film.n_v, dtype=bool)
-        inside[self.film.interior] = True
+        inside = _inside(self.film)
         follows = self.weight > 0
         return (
             np.flatnonzero(inside[i] & inside[k]),
@@ -95,34 +143,115 @@ class Variations:
         )
 
     @cached_property
-    def _height(self) -> IntArray:
-        """The number of the height of each vertex inside (n_v,)."""
-        height = np.zeros(self.film.n_v, dtype=np.int64)
-        height[self.film.interior] = np.arange(len(self.film.interior))
-        return height
-
-    @cached_property
     def _inside(self) -> Elimination:
-        heights, height = self._chosen[0], self._height
+        heights, number = self._chosen[0], _numbers(self.film)
         i, k = self.film.pairs
         none = np.zeros(0, dtype=np.int64)
-        return plan(height[i[heights]], height[k[heights]], self.film.pieces, none)
+        return plan(number[i[heights]], number[k[heights]], self.film.pieces, none)
 
     @cached_property
     def _elimination(self) -> Elimination:
-        film, height, (heights, coupling, loop) = self.film, self._height, self._chosen
+        film, number, (heights, coupling, loop) = (
+            self.film,
+            _numbers(self.film),
+            self._chosen,
+        )
         i, k = film.pairs
-        n_i, axes = len(film.interior), np.arange(3)
-        on_loop = n_i + 3 * self.leader[:, None] + axes
+        n_i = len(film.interior)
+        on_loop = n_i + 3 * self.leader[:, None] + _AXES
         kept_row = np.repeat(on_loop[i[loop]], 3, axis=1)
         kept_column = np.tile(on_loop[k[loop]], 3)
-        row = [height[i[heights]], np.repeat(height[i[coupling]], 3), kept_row.ravel()]
-        column = [height[k[heights]], on_loop[k[coupling]].ravel(), kept_column.ravel()]
+        row = [number[i[heights]], np.repeat(number[i[coupling]], 3), kept_row.ravel()]
+        column = [number[k[heights]], on_loop[k[coupling]].ravel(), kept_column.ravel()]
         kept = np.arange(n_i, n_i + 3 * len(film.loop))
         return plan(np.concatenate(row), np.concatenate(column), film.pieces, kept)
 
 
-def variations(film: AreaFilm, x: FloatArray, normals: FloatArray) -> Variations:
+@dataclass(frozen=True)
+class Free:
+    """All displacements of a curved film: three unknowns for each vertex inside."""
+
+    film: AreaFilm
+
+    @property
+    def size(self) -> int:
+        """Three for each vertex inside."""
+        return 3 * len(self.film.interior)
+
+    def displaced(self, u: FloatArray) -> FloatArray:
+        """Return u as (n_i, 3)."""
+        return u.reshape(-1, 3)
+
+    def work(self, gradient: FloatArray) -> FloatArray:
+        """Return the gradient inside (3 n_i,)."""
+        return gradient[self.film.interior].ravel()
+
+    def stiffness(self, sides: Sides) -> Condensation:
+        """Factorise the Hessian inside (3 n_i, 3 n_i), stiffened where it must be."""
+        return self.stiffened(sides, STILL)[0]
+
+    def stiffened(self, sides: Sides, shift: float) -> tuple[Condensation, float]:
+        """Factorise the Hessian inside plus a shift, the least found that does.
+
+        From the given one on; returns the shift too. Raises LinAlgError if none does.
+        """
+        blocks = self.film.hessian(sides)
+        while True:
+            shifted = self._stiffened(blocks, shift)[self._pairs_inside]
+            try:
+                return factorise(self._inside, shifted.ravel()), shift
+            except LinAlgError:
+                if shift > _STIFFEST:
+                    raise
+            shift = max(STIFFER * shift, LEAST)
+
+    def condense(self, blocks: FloatArray) -> Condensation:
+        """Eliminate all displacements inside."""
+        return factorise(self._elimination, self._stiffened(blocks, STILL).ravel())
+
+    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return H m inside (3 n_i,)."""
+        i, k = self.film.pairs
+        pull = np.einsum("pcd,pd->pc", blocks, moved[k])
+        columns = [summed(i, pull[:, d], self.film.n_v) for d in range(3)]
+        return np.stack(columns, axis=1)[self.film.interior].ravel()
+
+    def _stiffened(self, blocks: FloatArray, shift: float) -> FloatArray:
+        i, k = self.film.pairs
+        own = np.flatnonzero(i == k)
+        blocks = blocks.copy()
+        blocks[own[:, None], _AXES, _AXES] += shift
+        return blocks
+
+    @cached_property
+    def _pairs_inside(self) -> IntArray:
+        i, k = self.film.pairs
+        inside = _inside(self.film)
+        return np.flatnonzero(inside[i] & inside[k])
+
+    @cached_property
+    def _pieces(self) -> list[IntArray]:
+        small = self.film.small_pieces
+        return [(3 * piece[:, None] + _AXES).ravel() for piece in small]
+
+    @cached_property
+    def _inside(self) -> Elimination:
+        return self._planned(self._pairs_inside, np.zeros(0, dtype=np.int64))
+
+    @cached_property
+    def _elimination(self) -> Elimination:
+        kept = np.arange(self.size, 3 * self.film.n_v)
+        return self._planned(np.arange(len(self.film.pairs[0])), kept)
+
+    def _planned(self, pairs: IntArray, kept: IntArray) -> Elimination:
+        i, k = self.film.pairs
+        number = 3 * _numbers(self.film)[:, None] + _AXES
+        row = np.repeat(number[i[pairs]], 3, axis=1)
+        column = np.tile(number[k[pairs]], 3)
+        return plan(row.ravel(), column.ravel(), self._pieces, kept)
+
+
+def along_normals(film: AreaFilm, x: FloatArray, normals: FloatArray) -> AlongNormals:
     """Return the variations of a shape x (n_v, 3) with normals inside (n_i, 3)."""
     from scipy.spatial import cKDTree  # slow to load, and only soap films need it
 
@@ -133,4 +262,18 @@ def variations(film: AreaFilm, x: FloatArray, normals: FloatArray) -> Variations
     leader = np.zeros(film.n_v, dtype=np.int64)
     leader[loop], leader[inside] = np.arange(len(loop)), nearest
     weight[inside] = np.square(np.maximum(1 - distance / _WIDTH, 0.0))
-    return Variations(film, directions, leader, weight)
+    return AlongNormals(film, directions, leader, weight)
+
+
+def _inside(film: AreaFilm) -> IntArray:
+    """Return whether each vertex (n_v,) is inside."""
+    found = np.zeros(film.n_v, dtype=bool)
+    found[film.interior] = True
+    return found
+
+
+def _numbers(film: AreaFilm) -> IntArray:
+    """Return the place of each vertex (n_v,) among those inside, then those of the loop."""
+    number = np.empty(film.n_v, dtype=np.int64)
+    number[np.concatenate([film.interior, film.loop])] = np.arange(film.n_v)
+    return number

@@ -97,7 +97,7 @@ def test_film_on_a_flat_loop_is_its_polygon(oval: DiskMesh) -> None:
         found.force[:, :2], polygon_gradient(x_loop[:, :2]), atol=1e-15
     )
     np.testing.assert_allclose(found.force[:, 2], 0, atol=1e-15)
-    np.testing.assert_array_equal(found.heights, 0)
+    np.testing.assert_array_equal(found.u, 0)
 
 
 def test_harmonic_values_are_linear_ones_on_a_flat_film_and_within_the_loops() -> None:

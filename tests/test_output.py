@@ -44,6 +44,7 @@ ROW = Row(
     self_intersections=0,
     aspect=0.56,
     min_angle=21.5,
+    film_residual=3e-15,
 )
 
 
@@ -62,7 +63,7 @@ def test_columns_are_those_users_were_promised() -> None:
         "step kL3_alpha sigma_hat energy film_energy bending_energy abs_kappa_n "
         "total_gauss_curvature area n_unstable lowest_eigenvalue residual length_error "
         "iterations seconds status max_turning waist_twist self_intersections aspect "
-        "min_angle"
+        "min_angle film_residual"
     )
     assert list(COLUMNS) == promised.split()
 

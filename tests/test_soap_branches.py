@@ -7,7 +7,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-import shapes
 import soap_films
 
 from eulerplateau import newton
@@ -64,23 +63,33 @@ def test_twisted_films_are_mirror_images_of_each_other() -> None:
         assert one.load == pytest.approx(other.load, rel=1e-8)
         assert energy(one) == pytest.approx(energy(other), rel=1e-8)
         mirrored = one.x * [1.0, 1.0, -1.0]
-        assert loop_distance(mirrored, other.x) < 1e-6
+        # Where triangles of the regular mesh tie, Delaunay's may be either: nothing to a
+        # film whose mesh errs by 1e-2.
+        assert loop_distance(mirrored, other.x) < 1e-5
         assert loop_distance(one.x, other.x) > 1e-4
 
 
 def test_pitchfork_is_subcritical() -> None:
-    """The twisted branch runs down in the load, unstable, and in its square root."""
+    """The twisted branch runs down in the load, unstable, with the square of its twist.
+
+    To an onset that is the planar film's but for another mesh inside: vertices that may lie
+    anywhere on a flat film find their places on a curved one.
+    """
     special = next(v.special for v in visits() if v.special is not None)
     onset = special.point.load
-    distances, twists = [], []
+    loads, twists = [], []
     for point in on_branch(1):
         assert point.load < onset
         assert point.stability.n_unstable == 1
-        if onset - point.load < 0.03 * onset:
-            distances.append(onset - point.load)
+        if onset - point.load < 0.05 * onset:
+            loads.append(point.load)
             twists.append(np.ptp(point.x[:, 2]))
-    assert len(twists) >= 3
-    assert shapes.fitted_order(distances, twists) == pytest.approx(0.5, abs=0.03)
+    assert len(twists) >= 4
+    curve = np.polynomial.Polynomial.fit(np.square(twists), loads, 2)
+    assert curve.deriv()(0.0) < 0
+    assert np.abs(curve(np.square(twists)) - loads).max() < 1e-3 * np.ptp(loads)
+    # The film's own error is 3e-2 here.
+    assert curve(0.0) == pytest.approx(onset, rel=1e-3)
 
 
 def test_planar_branch_is_the_plane_film_whatever_becomes_of_the_mesh() -> None:

@@ -46,6 +46,7 @@ class Row:
     self_intersections: int | None
     aspect: float
     min_angle: float
+    film_residual: float
     quantity: str = field(default=SPRING_LOAD.column, kw_only=True)
 
     @property

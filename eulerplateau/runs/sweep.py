@@ -209,6 +209,7 @@ def make_row(step: int, found: Equilibrium, load: Load, shape: dict[str, Any]) -
         n_unstable=found.n_unstable,
         lowest_eigenvalue=found.lowest_eigenvalue,
         residual=found.residual,
+        film_residual=found.film_residual,
         length_error=found.length_error,
         iterations=found.iterations,
         seconds=found.seconds,

@@ -26,7 +26,6 @@ removed as well: u are then all displacements inside, g_i = 0, f = g_b, and S is
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -35,15 +34,16 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.area_film import AreaFilm, Sides
 from eulerplateau.condensation import Condensation
+from eulerplateau.free import Free, at_rest, is_rest
 from eulerplateau.harmonic import follower
 from eulerplateau.mesh import FloatArray
-from eulerplateau.variations import Free, Variations, along_normals
+from eulerplateau.variations import AlongNormals, Variations, along_normals
 
 _STEPS = 30
+# Parts of a predicted change that are tried, as long as triangles fold over.
+_PARTS = 1.0, 0.5, 0.25
 # Part of the error that a step with an old factorised Hessian may leave.
 _SLOW = 0.1
-# Rounding of forces of unit tension along an edge, in eps: some twenty of them are summed.
-ROUNDING = 20 * float(np.finfo(np.float64).eps)
 # Re-weighting brings a rough film near: until it gains less than this part of the area.
 _NEAR = 1e-3
 _REWEIGHTINGS = 6
@@ -98,14 +98,12 @@ class Relaxed:
         return self.chart.variations.condense(self._second)
 
     @property
-    def tilt(self) -> float:
-        """The smallest cosine between the film's normals and its chart's."""
-        return self.chart.tilt(self.sides)
-
-    @property
     def central(self) -> bool:
         """Whether the film is at rest in the chart made at its own shape."""
-        return isinstance(self.chart.variations, Free) or self.tilt > _NO_TILT
+        return (
+            isinstance(self.chart.variations, Free)
+            or self.chart.tilt(self.sides) > _NO_TILT
+        )
 
     def displacement(self, moved: FloatArray) -> FloatArray:
         """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
@@ -187,65 +185,72 @@ class Chart:
         for known in self._recent:
             if np.array_equal(known.x[loop], x_loop):
                 return known
-        found = self._newton(x_loop)
+        base = self.x + self.follow(x_loop - self.x[loop])
+        base[loop] = x_loop
+        find = self._settled if isinstance(self.variations, Free) else self._newton
+        found = find(base, self._begun(base))
         self._recent[:] = [found, *self._recent[:1]]
         return found
 
-    def _newton(self, x_loop: FloatArray) -> Relaxed:
-        film, inside = self.film, self.film.interior
-        base = self.x + self.follow(x_loop - self.x[film.loop])
-        base[film.loop] = x_loop
+    def _at(self, base: FloatArray, u: FloatArray) -> Relaxed | None:
+        """Return the film displaced by u from a mesh (n_v, 3); None if it folds over."""
+        x = base.copy()
+        x[self.film.interior] += self.variations.displaced(u)
+        sides = self.film.sides(x)
+        if not self.unfolded(sides):
+            return None
+        return Relaxed(self, x, u, sides, self.film.gradient(sides))
 
-        def at(u: FloatArray) -> Relaxed | None:
-            x = base.copy()
-            x[inside] += self.variations.displaced(u)
-            sides = film.sides(x)
-            if not self.unfolded(sides):
-                return None
-            return Relaxed(self, x, u, sides, film.gradient(sides))
-
-        u, inverse = self._predicted(base)
-        state, error, fresh = at(u), np.inf, False
-        if state is None and self._recent:
-            state = at(self._recent[0].u)
+    def _begun(self, base: FloatArray) -> Relaxed:
+        """Return the film to begin with: the last, and its response as far as it goes."""
+        last = self._recent[0] if self._recent else None
+        u = np.zeros(self.variations.size) if last is None else last.u
+        if last is not None and "condensed" in last.__dict__:
+            moved = base - last.x
+            moved[self.film.interior] += self.variations.displaced(u)
+            response = last.response(moved)
+            for part in _PARTS:
+                state = self._at(base, u + part * response)
+                if state is not None:
+                    return state
+        state = self._at(base, u)
         if state is None:
             raise LinAlgError("a triangle of the film has folded over")
+        return state
+
+    def _newton(self, base: FloatArray, state: Relaxed) -> Relaxed:
+        """Return the film at rest along its normals."""
+        variations = self.variations
+        assert isinstance(variations, AlongNormals)
+        last = self._recent[0] if self._recent else None
+        inverse = last.condensed if last and "condensed" in last.__dict__ else None
+        error, fresh = np.inf, False
         for _ in range(_STEPS):
-            force = self.variations.work(state.gradient)
+            force = variations.work(state.gradient)
             before, error = error, float(np.abs(force).max(initial=0.0))
-            scale = float(np.abs(state.sides.edges).max())
-            stuck = fresh and error < 1e-9 * scale and error > 0.25 * before
-            if error <= ROUNDING * scale or stuck:
+            if is_rest(state.sides, error, before, fresh):
                 return state
             fresh = inverse is None or error > _SLOW * before
             if inverse is None or fresh:
-                inverse = self.variations.stiffness(state.sides)
-            state = self._descend(state, force, inverse, at)
+                inverse = variations.stiffness(state.sides)
+            state = self._descend(base, state, force, inverse)
         raise LinAlgError("the film does not come to rest")
 
-    def _predicted(self, base: FloatArray) -> tuple[FloatArray, Condensation | None]:
-        """Return u (n_u,) to begin with, and the last factorised Hessian if any."""
-        if not self._recent:
-            return np.zeros(self.variations.size), None
-        last = self._recent[0]
-        if "condensed" not in last.__dict__:
-            return last.u, None
-        moved = base - last.x
-        moved[self.film.interior] += self.variations.displaced(last.u)
-        return last.u + last.response(moved), last.condensed
+    def _settled(self, base: FloatArray, state: Relaxed) -> Relaxed:
+        """Return the film at rest by all displacements inside."""
+        assert isinstance(self.variations, Free)
+        x = at_rest(self.variations, state.x)
+        sides, u = self.film.sides(x), (x - base)[self.film.interior].ravel()
+        return Relaxed(self, x, u, sides, self.film.gradient(sides))
 
     def _descend(
-        self,
-        state: Relaxed,
-        force: FloatArray,
-        inverse: Condensation,
-        at: Callable[[FloatArray], Relaxed | None],
+        self, base: FloatArray, state: Relaxed, force: FloatArray, inverse: Condensation
     ) -> Relaxed:
         """Return the film after one Newton step, shortened until the area falls."""
         step = -inverse.solve(force)
         slope = float(force @ step)
         for _ in range(20):
-            after = at(state.u + step)
+            after = self._at(base, state.u + step)
             small = abs(slope) < 1e-15 * state.area
             if after and (small or self.film.change(state.x, after.x) <= 0.1 * slope):
                 return after

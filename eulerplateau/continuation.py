@@ -127,10 +127,10 @@ def follow(
                 step *= 0.5
                 if step < settings.smallest_step:
                     return
-        yield after
-        if stop(after) or not low <= after.load <= high:
-            return
         point = recentred(after, settings)
+        yield point
+        if stop(point) or not low <= point.load <= high:
+            return
         if after.corrections <= _EASY:
             step = min(1.5 * step, settings.largest_step)
 

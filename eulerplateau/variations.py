@@ -1,7 +1,7 @@
 """The displacements by which a film is varied, and what its second variation is by them.
 
-Of its interior they are the heights along normals, or all there are (`Free`); of its loop
-all. What is inside is eliminated.
+Of its interior they are the heights along normals (`AlongNormals`), or all there are
+(free.py); of its loop all. What is inside is eliminated.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import LinAlgError
 
 from eulerplateau.area_film import AreaFilm, Sides
 from eulerplateau.condensation import Condensation, factorise
@@ -21,12 +20,7 @@ from eulerplateau.mesh import FloatArray, IntArray
 # Width of the strip, in L: a circle's radius is 0.16. Where it reaches the middle between
 # two strands those on either side follow different ones, the less the better.
 _WIDTH = 0.1
-# A stiffness that flat pieces offer to sliding inside them, which would cost nothing.
-STILL = 1e-12
-# Where it resists something less than nothing more is added: at first the least, then so
-# many times as much, up to a thousand times what its sides offer to bending.
-LEAST, STIFFER, _STIFFEST = 1e-7, 4.0, 1e3
-_AXES = np.arange(3)
+AXES = np.arange(3)
 
 
 class Variations(Protocol):
@@ -41,12 +35,6 @@ class Variations(Protocol):
 
     def work(self, gradient: FloatArray) -> FloatArray:
         """Return what a gradient (n_v, 3) is by the unknowns (n_u,)."""
-
-    def stiffness(self, sides: Sides) -> Condensation:
-        """Factorise the Hessian by the unknowns on a shape (n_u, n_u), to `solve`.
-
-        Raises LinAlgError unless it is positive definite.
-        """
 
     def condense(self, blocks: FloatArray) -> Condensation:
         """Eliminate the unknowns of a Hessian, given by its blocks (m, 3, 3) of film.pairs.
@@ -100,7 +88,7 @@ class AlongNormals:
         return along
 
     def stiffness(self, sides: Sides) -> Condensation:
-        """Factorise n . H n (n_i, n_i)."""
+        """Factorise n . H n (n_i, n_i); LinAlgError unless it is positive definite."""
         entries = self.film.normal_hessian(sides, self.normals).data
         return factorise(self._inside, entries[self._chosen[0]])
 
@@ -134,7 +122,7 @@ class AlongNormals:
     def _chosen(self) -> tuple[IntArray, IntArray, IntArray]:
         """Which pairs couple heights, a height and the loop, the loop and the loop."""
         i, k = self.film.pairs
-        inside = _inside(self.film)
+        inside = is_inside(self.film)
         follows = self.weight > 0
         return (
             np.flatnonzero(inside[i] & inside[k]),
@@ -144,7 +132,7 @@ class AlongNormals:
 
     @cached_property
     def _inside(self) -> Elimination:
-        heights, number = self._chosen[0], _numbers(self.film)
+        heights, number = self._chosen[0], numbers(self.film)
         i, k = self.film.pairs
         none = np.zeros(0, dtype=np.int64)
         return plan(number[i[heights]], number[k[heights]], self.film.pieces, none)
@@ -153,102 +141,18 @@ class AlongNormals:
     def _elimination(self) -> Elimination:
         film, number, (heights, coupling, loop) = (
             self.film,
-            _numbers(self.film),
+            numbers(self.film),
             self._chosen,
         )
         i, k = film.pairs
         n_i = len(film.interior)
-        on_loop = n_i + 3 * self.leader[:, None] + _AXES
+        on_loop = n_i + 3 * self.leader[:, None] + AXES
         kept_row = np.repeat(on_loop[i[loop]], 3, axis=1)
         kept_column = np.tile(on_loop[k[loop]], 3)
         row = [number[i[heights]], np.repeat(number[i[coupling]], 3), kept_row.ravel()]
         column = [number[k[heights]], on_loop[k[coupling]].ravel(), kept_column.ravel()]
         kept = np.arange(n_i, n_i + 3 * len(film.loop))
         return plan(np.concatenate(row), np.concatenate(column), film.pieces, kept)
-
-
-@dataclass(frozen=True)
-class Free:
-    """All displacements of a curved film: three unknowns for each vertex inside."""
-
-    film: AreaFilm
-
-    @property
-    def size(self) -> int:
-        """Three for each vertex inside."""
-        return 3 * len(self.film.interior)
-
-    def displaced(self, u: FloatArray) -> FloatArray:
-        """Return u as (n_i, 3)."""
-        return u.reshape(-1, 3)
-
-    def work(self, gradient: FloatArray) -> FloatArray:
-        """Return the gradient inside (3 n_i,)."""
-        return gradient[self.film.interior].ravel()
-
-    def stiffness(self, sides: Sides) -> Condensation:
-        """Factorise the Hessian inside (3 n_i, 3 n_i), stiffened where it must be."""
-        return self.stiffened(sides, STILL)[0]
-
-    def stiffened(self, sides: Sides, shift: float) -> tuple[Condensation, float]:
-        """Factorise the Hessian inside plus a shift, the least found that does.
-
-        From the given one on; returns the shift too. Raises LinAlgError if none does.
-        """
-        blocks = self.film.hessian(sides)
-        while True:
-            shifted = self._stiffened(blocks, shift)[self._pairs_inside]
-            try:
-                return factorise(self._inside, shifted.ravel()), shift
-            except LinAlgError:
-                if shift > _STIFFEST:
-                    raise
-            shift = max(STIFFER * shift, LEAST)
-
-    def condense(self, blocks: FloatArray) -> Condensation:
-        """Eliminate all displacements inside."""
-        return factorise(self._elimination, self._stiffened(blocks, STILL).ravel())
-
-    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
-        """Return H m inside (3 n_i,)."""
-        i, k = self.film.pairs
-        pull = np.einsum("pcd,pd->pc", blocks, moved[k])
-        columns = [summed(i, pull[:, d], self.film.n_v) for d in range(3)]
-        return np.stack(columns, axis=1)[self.film.interior].ravel()
-
-    def _stiffened(self, blocks: FloatArray, shift: float) -> FloatArray:
-        i, k = self.film.pairs
-        own = np.flatnonzero(i == k)
-        blocks = blocks.copy()
-        blocks[own[:, None], _AXES, _AXES] += shift
-        return blocks
-
-    @cached_property
-    def _pairs_inside(self) -> IntArray:
-        i, k = self.film.pairs
-        inside = _inside(self.film)
-        return np.flatnonzero(inside[i] & inside[k])
-
-    @cached_property
-    def _pieces(self) -> list[IntArray]:
-        small = self.film.small_pieces
-        return [(3 * piece[:, None] + _AXES).ravel() for piece in small]
-
-    @cached_property
-    def _inside(self) -> Elimination:
-        return self._planned(self._pairs_inside, np.zeros(0, dtype=np.int64))
-
-    @cached_property
-    def _elimination(self) -> Elimination:
-        kept = np.arange(self.size, 3 * self.film.n_v)
-        return self._planned(np.arange(len(self.film.pairs[0])), kept)
-
-    def _planned(self, pairs: IntArray, kept: IntArray) -> Elimination:
-        i, k = self.film.pairs
-        number = 3 * _numbers(self.film)[:, None] + _AXES
-        row = np.repeat(number[i[pairs]], 3, axis=1)
-        column = np.tile(number[k[pairs]], 3)
-        return plan(row.ravel(), column.ravel(), self._pieces, kept)
 
 
 def along_normals(film: AreaFilm, x: FloatArray, normals: FloatArray) -> AlongNormals:
@@ -265,14 +169,14 @@ def along_normals(film: AreaFilm, x: FloatArray, normals: FloatArray) -> AlongNo
     return AlongNormals(film, directions, leader, weight)
 
 
-def _inside(film: AreaFilm) -> IntArray:
+def is_inside(film: AreaFilm) -> IntArray:
     """Return whether each vertex (n_v,) is inside."""
     found = np.zeros(film.n_v, dtype=bool)
     found[film.interior] = True
     return found
 
 
-def _numbers(film: AreaFilm) -> IntArray:
+def numbers(film: AreaFilm) -> IntArray:
     """Return the place of each vertex (n_v,) among those inside, then those of the loop."""
     number = np.empty(film.n_v, dtype=np.int64)
     number[np.concatenate([film.interior, film.loop])] = np.arange(film.n_v)

@@ -20,9 +20,9 @@ LAYERS = (
     "__init__ area_kernels errors flip_kernels follow_kernels kernels load mesh parameters "
     "planar plane_kernels polygon_angle_kernels slide_kernels solution "
     "tangent_angle_kernels",
-    "area_film chart condensation conformal curvature dissection elimination film harmonic "
-    "inextensible intersections kick loop measures meshing minimal motions plane_film "
-    "plane_mesh repair scaling symmetry tangent_angle variations",
+    "area_film chart condensation conformal curvature dissection elimination film free "
+    "harmonic inextensible intersections kick loop measures meshing minimal motions "
+    "plane_film plane_mesh repair scaling symmetry tangent_angle variations",
     "area_energy cell condensed plane_energy problem tangent",
     "coarsening conjugate_gradient descent loop_model modes newton plane_chain "
     "plane_newton primal_dual shifted_inverse soap_newton stability trial_space "

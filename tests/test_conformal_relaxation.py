@@ -10,6 +10,7 @@ import pytest
 
 from eulerplateau.conformal.energy import terms
 from eulerplateau.conformal.equilibrium import correct
+from eulerplateau.conformal.geometry import waist
 from eulerplateau.conformal.grading import FloatArray, Grading, dirichlet_form
 from eulerplateau.conformal.relaxation import relax
 from eulerplateau.conformal.rod_kernels import loop_derivatives, loop_energy
@@ -21,11 +22,11 @@ from eulerplateau.planar import planar_film
 SECTORS = {"two lobes": 2, "three lobes": 3, "four lobes": 4}
 
 
-def ellipse(aspect: float, points: int) -> FloatArray:
+def ellipse(aspect: float, points: int, height: float = 0.1) -> FloatArray:
     """A start, equidistant in the angle and not in arc length, and of no special size."""
     angle = 2 * pi * np.arange(points) / points
     x, y = aspect * np.cos(angle), np.sin(angle)
-    return np.stack([x, y, 0.1 * x * y], axis=1)
+    return np.stack([x, y, height * x * y], axis=1)
 
 
 def lobed(n: int, points: int) -> FloatArray:
@@ -99,6 +100,24 @@ def test_a_round_start_beyond_the_threshold_leaves_the_disk() -> None:
     film = relax(ellipse(1.0, 96), 1600.0, 16)
     assert film is not None
     assert film.energy == pytest.approx(planar_film(2, 1600.0).energy, rel=1e-8)
+
+
+@pytest.mark.parametrize(("aspect", "load"), [(2.0, 1900.0), (3.0, 2000.0), (2.0, 2500.0)])
+@pytest.mark.parametrize("harmonics", [16, 32])
+def test_a_film_that_pinches_on_its_way_down_is_none(
+    aspect: float, load: float, harmonics: int
+) -> None:
+    """Beyond the twist, 1855.68, what lies lower has no width left in its waist."""
+    assert relax(ellipse(aspect, 6 * harmonics, 0.4), load, harmonics) is None
+
+
+def test_waist_is_the_width_of_the_film_in_its_middle() -> None:
+    film = relax(ellipse(2.0, 192), 1800.0, 32)
+    assert film is not None
+    sector = make_sector(32, 2)
+    assert sector.waist(film.coefficients) == pytest.approx(waist(film), rel=1e-12)
+    ahead, behind = planar_film(2, 1800.0).positions(np.array([0.25, 0.75]))
+    assert waist(film) == pytest.approx(float(np.linalg.norm(ahead - behind)), rel=1e-7)
 
 
 def test_a_start_with_corners_relaxes_too() -> None:

@@ -38,6 +38,8 @@ _SHARE, _ROUNDING = 1e-4, 1e-13
 _FLATTEST = 1e-5
 # Negative curvature smaller than this part of the largest is rounding.
 _FLAT = 1e-12
+# Width of a waist, in the length of a loop over its harmonics, that they do not resolve.
+_PINCHED = 0.2
 # At a saddle, where there is no slope, the step along its lowest mode.
 _KICK = 1e-3
 
@@ -68,6 +70,9 @@ def relax(
     lobes alike, the first vertex at a tip on the axis x > 0 (the half-turns of sector.py),
     which the film keeps: it is a minimum among films that have them. Two lobes lie along x
     afterwards.
+
+    None too if the film of two lobes pinches on its way down: where the strands of its
+    waist come closer than harmonics resolve, no disk spans what is between them.
 
     A start with corners is rounded off until the way down shows no bend too sharp for the
     grid; if none helps, more harmonics may.
@@ -194,14 +199,21 @@ def _newton_step(gradient: FloatArray, hessian: FloatArray) -> tuple[FloatArray,
     return modes @ along, False
 
 
-def _as_film(sector: Sector, state: _State, load: float, steps: int) -> ConformalFilm:
-    """Return the film of a minimum, in the basis that holds its loop; two lobes along x."""
+def _as_film(
+    sector: Sector, state: _State, load: float, steps: int
+) -> ConformalFilm | None:
+    """Return the film of a minimum, in the basis that holds its loop; two lobes along x.
+
+    None if it has pinched.
+    """
     gradient, _ = _derivatives(sector, state, load, np.ones(len(state.c) + 1))
     k = sector.k
     scale = 1 / (k * np.sqrt(1 + k**2))
     pull = load * sector.stiffness(state.nome) * state.c
     residual = float(np.abs(scale * gradient[:-1]).max() / np.abs(scale * pull).max())
     c = state.c if state.nome >= 0 else sector.turned(state.c)
+    if sector.lobes == 2 and sector.waist(c) < _PINCHED / sector.harmonics:
+        return None
     crowding = 1.0 if sector.lobes > 2 else crowding_of(abs(state.nome))
     basis = Basis(sector.harmonics, sector.family, crowding)
     return ConformalFilm(

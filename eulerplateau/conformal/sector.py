@@ -105,6 +105,11 @@ class Sector:
         swapped[z] = np.cos(pi / 2 * self.wave[z]) * c[z]
         return swapped
 
+    def waist(self, c: FloatArray) -> float:
+        """Return the distance of the strands of a loop (size,) with two lobes along x."""
+        across = self.part == 1
+        return 2 * abs(float(np.sin(pi / 2 * self.wave[across]) @ c[across]))
+
     def into(self, basis: Basis, c: FloatArray) -> FloatArray:
         """Return a loop's coefficients (basis.size,) in a basis of `family`."""
         if self.lobes == 2:

@@ -98,7 +98,7 @@ def plan(
     """Find where entries go while all rows but those `kept` are eliminated, in pieces.
 
     row, column : (m,), of the entries of a symmetric matrix. Those with the same place are
-    summed; of two that mirror each other the one in the later row may be missing.
+    summed; of two that mirror each other across parts the later row's may be missing.
     """
     order = np.concatenate([*pieces, kept])
     place = np.empty(len(order), dtype=np.int64)

@@ -22,10 +22,10 @@ from eulerplateau.variations import AXES, is_inside, numbers
 # Rounding of forces of unit tension along an edge, in eps: some twenty of them are summed.
 ROUNDING = 20 * float(np.finfo(np.float64).eps)
 _STEPS = 60
-# A stiffness that flat pieces offer to sliding inside them, which would cost nothing.
+# The stiffness added against sliding, which inside flat pieces would cost nothing.
 STILL = 1e-12
-# Where it resists something less than nothing more is added: at first the least, then so
-# many times as much, up to a thousand times what its sides offer to bending.
+# Where the area curves downwards more is added: at first the least, then so many times as
+# much, up to a thousand times what its triangles offer to displacements across them.
 _LEAST, _STIFFER, _STIFFEST = 1e-7, 4.0, 1e3
 # A shift shrinks after steps that are long, and grows after short ones.
 _SOFTER, _LONG, _SHORT = 0.25, 0.5, 0.1

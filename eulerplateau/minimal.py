@@ -11,6 +11,7 @@ triangles, without which some collapse.
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from eulerplateau.area_film import AreaFilm
 from eulerplateau.free import ROUNDING, Free, smaller
@@ -42,13 +43,16 @@ def minimal(film: AreaFilm, x: FloatArray) -> tuple[AreaFilm, FloatArray] | None
     free, shift = Free(film), _SHIFT
     for _ in range(_STEPS):
         sides = film.sides(x)
+        if sides.smallest_angle < _VANISHING:
+            return None
         force = free.work(film.gradient(sides))
         error = float(np.abs(force).max(initial=0.0))
         if error <= ROUNDING * float(np.abs(sides.edges).max()):
             return film, x
-        if sides.smallest_angle < _VANISHING:
+        try:
+            x, shift = smaller(free, x, sides, force, shift)
+        except LinAlgError:
             return None
-        x, shift = smaller(free, x, sides, force, shift)
         better = flipped(film, x)
         if better is not film:
             film, free = better, Free(better)

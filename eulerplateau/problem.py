@@ -90,18 +90,16 @@ class Problem:
     def freed(self, x: FloatArray) -> Problem:
         """Return the problem with its film sought near the minimal surface next to x.
 
-        The problem itself where there is none, and where the film is flat, its vertices
-        may lie anywhere.
+        The problem itself where there is none, and where the film is flat: then its
+        vertices may lie anywhere.
         """
-        film = self.film
-        if not isinstance(film, AreaFilm) or is_flat(film, x):
+        if not isinstance(self.film, AreaFilm) or is_flat(self.film, x):
             return self
-        found = minimal(film, x)
-        return (
-            self
-            if found is None
-            else replace(self, film=found[0], centre=found[1], free=True)
-        )
+        found = minimal(self.film, x)
+        if found is None:
+            return self
+        film, centre = found
+        return replace(self, film=film, centre=centre, free=True)
 
     def at(self, x: FloatArray) -> Problem:
         """Return the problem with its film sought near x (n_v, 3), its triangles kept."""

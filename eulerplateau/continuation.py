@@ -12,110 +12,35 @@ and each point is corrected inside the hyperplane normal to the last direction (
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-import numpy as np
-from scipy.linalg import LinAlgError
-
+from eulerplateau.branch_point import (
+    BranchPoint,
+    Direction,
+    Settings,
+    coefficients_of,
+    correct,
+    inner,
+    make_direction,
+)
 from eulerplateau.condensed import loop_energy
-from eulerplateau.inextensible import project_lengths
-from eulerplateau.mesh import FloatArray
 from eulerplateau.problem import Problem
-from eulerplateau.solution import RESIDUAL_TOLERANCE
-from eulerplateau.stability import Stability, stability
-from eulerplateau.tangent import TangentModel, tangent_model
 
-_CORRECTIONS = 12
 _EASY = 4  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
-NOISE = 1e-10  # relative singular value below which forces are rounding
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How a branch is followed.
-
-    Attributes
-    ----------
-    load_range : the window of loads; a branch ends where it leaves it
-    load_unit : float
-        A change of the load by this much is as long as a displacement of 1 L (r.m.s.).
-    first_step, largest_step, smallest_step : arclengths
-    max_points : int, per branch
-    """
-
-    load_range: tuple[float, float]
-    load_unit: float
-    first_step: float = 5e-3
-    largest_step: float = 0.03
-    smallest_step: float = 1e-9
-    max_points: int = 400
-
-
-@dataclass(frozen=True)
-class Direction:
-    """A direction of a branch: displacement (n_b, 3) and load rate, of unit arclength."""
-
-    displacement: FloatArray
-    load: float
-
-    def reversed(self) -> Direction:
-        """Return the opposite direction."""
-        return Direction(-self.displacement, -self.load)
-
-
-@dataclass(frozen=True)
-class BranchPoint:
-    """An equilibrium on a branch, the branch's direction there, and its stability.
-
-    `problem` is the one it solves: a soap film's is made anew where the film has turned.
-    """
-
-    problem: Problem
-    model: TangentModel
-    load: float
-    direction: Direction
-    arclength: float
-    corrections: int
-
-    @property
-    def x(self) -> FloatArray:
-        """Loop positions (n_b, 3)."""
-        return self.model.x
-
-    @property
-    def stability(self) -> Stability:
-        """Spectrum of the second variation."""
-        return stability(self.model)
-
-    @property
-    def film(self) -> FloatArray:
-        """The film (n_v, 3) on the loop."""
-        return self.problem.condensed.extend(self.x)
-
-    def displacement(self, moved: FloatArray) -> FloatArray:
-        """Return how the film (n_v, 3) follows a displacement of the loop (n_b, 3)."""
-        return self.problem.condensed.displacement(self.x, moved)
-
-
-def first_point(
-    problem: Problem, x_loop: FloatArray, load: float, settings: Settings
-) -> BranchPoint:
-    """Return the branch point at an equilibrium (n_b, 3), heading for higher loads."""
-    model = tangent_model(loop_energy(problem, load), x_loop)
-    upwards = Direction(np.zeros_like(x_loop), settings.load_unit)
-    direction = branch_direction(problem, model, upwards, settings)
-    return BranchPoint(problem, model, load, direction, 0.0, 0)
+_LEAST_LEAP = 1e-4  # arclength below which a leap is none, but a branch that turns
 
 
 def follow(
     start: BranchPoint,
     settings: Settings,
     stop: Callable[[BranchPoint], bool] = lambda point: False,
+    leaps: Callable[[BranchPoint, BranchPoint], bool] = lambda before, after: False,
 ) -> Iterator[BranchPoint]:
     """Yield the points after `start` until the branch leaves the window or `stop` is true.
 
-    Ends early where no step, however short, can be corrected.
+    Steps between points of which `leaps` is true are shortened. Ends early where no step,
+    however short, can be corrected.
     """
     point, step = start, settings.first_step
     low, high = settings.load_range
@@ -123,8 +48,8 @@ def follow(
         after = None
         while after is None:
             after = advance(point, step, settings)
-            if after is None:
-                step *= 0.5
+            if after is None or (step > _LEAST_LEAP and leaps(point, after)):
+                after, step = None, 0.5 * step
                 if step < settings.smallest_step:
                     return
         point = recentred(after, settings)
@@ -144,8 +69,21 @@ def advance(point: BranchPoint, step: float, settings: Settings) -> BranchPoint 
     if after is None:
         return None
     # A step that turns sharply has landed on a branch that crosses this one.
-    ahead = _inner(problem, point.direction, after.direction, settings)
+    before = _kept(point, after, settings)
+    ahead = inner(problem, before, after.direction, settings)
     return None if ahead < _STRAIGHT else replace(after, arclength=point.arclength + step)
+
+
+def _kept(point: BranchPoint, after: BranchPoint, settings: Settings) -> Direction:
+    """Return the direction at `point`, as far as its motions are still free at `after`.
+
+    A round loop's sliding is its rotation; once it is not it is taken out (motions.py).
+    """
+    model = after.model
+    if len(point.model.gradient) == len(model.gradient):
+        return point.direction
+    coefficients = coefficients_of(model, point.direction.displacement)
+    return make_direction(model, coefficients, point.direction.load, settings)
 
 
 def recentred(point: BranchPoint, settings: Settings) -> BranchPoint:
@@ -157,143 +95,12 @@ def recentred(point: BranchPoint, settings: Settings) -> BranchPoint:
 
 def freed(point: BranchPoint, settings: Settings) -> BranchPoint:
     """Return the point with its soap film a minimal surface, where that is curved."""
-    there = point.problem.freed(point.film)
-    return point if there is point.problem else _anew(point, there, settings)
+    return _anew(point, point.problem.freed(point.film), settings)
 
 
 def _anew(point: BranchPoint, problem: Problem, settings: Settings) -> BranchPoint:
     """Return the point in another problem; itself if it is not found there."""
+    if problem is point.problem:
+        return point
     found = correct(problem, point.x, point.load, point.direction, settings)
     return point if found is None else replace(found, arclength=point.arclength)
-
-
-def along(point: BranchPoint, other: BranchPoint, settings: Settings) -> float:
-    """Return how far `other` lies from `point` along the branch's direction there."""
-    way = Direction(other.x - point.x, other.load - point.load)
-    return _inner(point.problem, point.direction, way, settings)
-
-
-def _inner(problem: Problem, a: Direction, b: Direction, settings: Settings) -> float:
-    product = np.sum(a.displacement * b.displacement, axis=1)
-    load = a.load * b.load / settings.load_unit**2
-    return float(problem.loop.mean_lengths @ product) + load
-
-
-def correct(
-    problem: Problem,
-    guess: FloatArray,
-    load: float,
-    direction: Direction,
-    settings: Settings,
-    attempts: tuple[float, ...] = (0.0, NOISE),
-) -> BranchPoint | None:
-    """Return the equilibrium in the hyperplane through the guess normal to `direction`.
-
-    Each of the attempts keeps still along singular vectors of relative value below it.
-    """
-    for smallest in attempts:
-        found = _correct(problem, guess, load, direction, settings, smallest)
-        if found is not None:
-            return found
-    return None
-
-
-def _correct(
-    problem: Problem,
-    guess: FloatArray,
-    load: float,
-    direction: Direction,
-    settings: Settings,
-    smallest: float,
-) -> BranchPoint | None:
-    """Correct by Newton's method, still along singular vectors below `smallest`.
-
-    Close to a bifurcation the Hessian hardly resists its critical mode: along it, rounding
-    in the forces becomes motion, which a second attempt leaves out.
-    """
-    x = project_lengths(problem.loop, guess)
-    best = np.inf
-    guess_load = load
-    for corrections in range(_CORRECTIONS):
-        if x is None or load <= 0 or not np.isfinite(load):
-            return None
-        try:
-            model = tangent_model(loop_energy(problem, load), x)
-        except LinAlgError:  # no film on this loop
-            return None
-        normal = _coefficients(model, direction.displacement)
-        way = Direction(x - guess, load - guess_load)
-        off = _inner(problem, direction, way, settings)
-        settled = model.residual <= max(4 * model.rounding, 1e-13)
-        stuck = model.residual < RESIDUAL_TOLERANCE**1.5 and model.residual > 0.5 * best
-        if settled or stuck:
-            tangent = branch_direction(problem, model, direction, settings)
-            return BranchPoint(problem, model, load, tangent, 0.0, corrections)
-        best = min(best, model.residual)
-        system = _bordered(problem, model, normal, direction.load, settings)
-        rhs = -np.append(model.gradient, off)
-        try:
-            shift = _solve(system, rhs, smallest)
-        except LinAlgError:
-            return None
-        x = project_lengths(problem.loop, x + model.displacement(shift[:-1]))
-        load = load + float(shift[-1])
-    return None
-
-
-def _solve(system: FloatArray, rhs: FloatArray, smallest: float) -> FloatArray:
-    if smallest == 0.0:
-        return np.linalg.solve(system, rhs).astype(np.float64)
-    return np.linalg.lstsq(system, rhs, rcond=smallest)[0].astype(np.float64)
-
-
-def branch_direction(
-    problem: Problem, model: TangentModel, last: Direction, settings: Settings
-) -> Direction:
-    """Return the branch's direction at an equilibrium, turned the way of `last`.
-
-    The null vector of [H, b]: bordering by `last` would have to find one near `last`, also
-    where a step has landed on a branch that crosses.
-    """
-    slope = load_derivative(problem, model) * settings.load_unit
-    wide = np.column_stack([model.hessian, slope])
-    null = np.linalg.qr(wide.T, mode="complete")[0][:, -1]
-    found = make_direction(model, null[:-1], null[-1] * settings.load_unit, settings)
-    return found if _inner(problem, found, last, settings) >= 0 else found.reversed()
-
-
-def make_direction(
-    model: TangentModel, coefficients: FloatArray, load: float, settings: Settings
-) -> Direction:
-    """Return the direction with these tangent coefficients, scaled to unit arclength."""
-    size = float(np.sqrt(coefficients @ coefficients + (load / settings.load_unit) ** 2))
-    return Direction(model.displacement(coefficients / size), load / size)
-
-
-def load_derivative(problem: Problem, model: TangentModel) -> FloatArray:
-    """Return b = dg/dl (2 n_b - 6,), the film's force per unit of load on tangent space."""
-    force = problem.condensed.force(model.x)
-    derivative: FloatArray = model.basis.T @ (force.ravel() / model.scale)
-    return derivative
-
-
-def _coefficients(model: TangentModel, displacement: FloatArray) -> FloatArray:
-    found: FloatArray = model.basis.T @ (displacement.ravel() * model.scale)
-    return found
-
-
-def _bordered(
-    problem: Problem,
-    model: TangentModel,
-    normal: FloatArray,
-    load: float,
-    settings: Settings,
-) -> FloatArray:
-    """Return [[H, b], [normal^T, load / unit^2]]: regular at folds, where H is not."""
-    m = len(normal)
-    system = np.empty((m + 1, m + 1))
-    system[:m, :m] = model.hessian
-    system[:m, m] = load_derivative(problem, model)
-    system[m, :m] = normal
-    system[m, m] = load / settings.load_unit**2
-    return system

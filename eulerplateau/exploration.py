@@ -5,10 +5,17 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import count
 
-from eulerplateau.continuation import BranchPoint, Settings, follow
-from eulerplateau.special_points import SpecialPoint, branches_from, special_points
+from eulerplateau.branch_point import BranchPoint, Settings
+from eulerplateau.continuation import follow
+from eulerplateau.special_points import (
+    SpecialPoint,
+    branches_from,
+    leaps,
+    special_points,
+)
 from eulerplateau.symmetry import loop_distance
 
 # Two special points are one if their loads agree to this (relative) and their loops to
@@ -92,7 +99,8 @@ def _trace(
     """Yield one branch; special points not met before are added to `found`."""
     yield Visit(branch, lead.origin, lead.start)
     before = lead.start
-    for after in follow(lead.start, settings, limits.stop):
+    leap = partial(leaps, settings=settings)
+    for after in follow(lead.start, settings, limits.stop, leap):
         for special in special_points(before, after, settings):
             number = _number(special, found)
             known = number < len(found)

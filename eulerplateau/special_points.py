@@ -16,16 +16,15 @@ from functools import partial
 
 import numpy as np
 
-from eulerplateau.continuation import (
+from eulerplateau.branch_point import (
     BranchPoint,
     Direction,
     Settings,
-    advance,
     correct,
-    freed,
     load_derivative,
     make_direction,
 )
+from eulerplateau.continuation import advance, freed
 from eulerplateau.mesh import FloatArray
 from eulerplateau.stretch import Stretch, eigenvalue, load_rate
 from eulerplateau.symmetry import ModeSymmetry, mode_symmetry
@@ -38,6 +37,9 @@ _NO_PART = 1e-3
 # Arclength at which a branch is left for another: far enough for two distinct solutions
 # to be told apart, close enough to be certain of landing on the wanted one.
 _SWITCHING_STEP = 2e-3
+# Part of an eigenvalue's change that it may be short of zero where it changes sign; and how
+# many times what rounding makes of it the change has to be.
+_LEAP, _CLEAR = 0.01, 1e3
 # Relative difference of loads below which two modes are lost together.
 _TOGETHER = 1e-6
 # Part of a pure change of load that a direction may have and still count as level: near
@@ -105,6 +107,26 @@ def special_points(
         # The eigenvalue of an all but free rotation wanders about zero: no event.
         if found.load_error < _TOGETHER * point.load:
             yield found
+
+
+def leaps(before: BranchPoint, after: BranchPoint, settings: Settings) -> bool:
+    """Return whether a step has left its branch for another that passes close by.
+
+    Where two branches miss each other narrowly, as an imperfect mesh makes those of a
+    bifurcation do, an eigenvalue then changes sign without being zero in between.
+    """
+    if before.direction.load * after.direction.load < 0:
+        return False
+    stretch = Stretch(before, after, settings)
+    for index in stretch.crossing:
+        ends = (end.stability.eigenvalues[index] for end in (before, after))
+        rise = abs(next(ends) - next(ends))
+        if rise < _CLEAR * after.stability.error_bound:
+            continue
+        point = stretch.locate(partial(eigenvalue, index))
+        if point is None or abs(point.stability.eigenvalues[index]) > _LEAP * rise:
+            return True
+    return False
 
 
 def branches_from(special: SpecialPoint, settings: Settings) -> Iterator[BranchPoint]:

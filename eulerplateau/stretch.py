@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from eulerplateau.continuation import NOISE, BranchPoint, Settings, along, correct
+from eulerplateau.branch_point import NOISE, BranchPoint, Settings, along, correct
 
 _PRECISION = 1e-14
 _LOAD_ROUNDING = 4 * float(np.finfo(np.float64).eps)

@@ -12,7 +12,7 @@ import click
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from eulerplateau.continuation import Settings, first_point
+from eulerplateau.branch_point import Settings, first_point
 from eulerplateau.curvature import loop_frame, total_gauss_curvature
 from eulerplateau.exploration import Limits, explore
 from eulerplateau.mesh import DiskMesh

@@ -19,8 +19,9 @@ from threadpoolctl import threadpool_limits
 
 from eulerplateau import newton
 from eulerplateau.area_film import AreaFilm
+from eulerplateau.branch_point import BranchPoint, Settings, first_point
 from eulerplateau.chart import chart_at
-from eulerplateau.continuation import BranchPoint, Settings, first_point, follow
+from eulerplateau.continuation import follow
 from eulerplateau.harmonic import moved_with
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.meshing import MeshSpec, generate

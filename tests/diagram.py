@@ -12,8 +12,8 @@ import shapes
 from equilibria import critical_point
 
 from eulerplateau import newton
+from eulerplateau.branch_point import BranchPoint, Settings, first_point
 from eulerplateau.condensed import loop_energy
-from eulerplateau.continuation import BranchPoint, Settings, first_point
 from eulerplateau.exploration import Limits, Visit, explore
 from eulerplateau.inextensible import close_with_lengths
 from eulerplateau.measures import waist_path, waist_twist

@@ -10,14 +10,8 @@ from scipy.sparse import csr_array
 
 from eulerplateau import newton
 from eulerplateau.area_film import AreaFilm
-from eulerplateau.continuation import (
-    BranchPoint,
-    Direction,
-    Settings,
-    correct,
-    first_point,
-    follow,
-)
+from eulerplateau.branch_point import BranchPoint, Direction, Settings, correct, first_point
+from eulerplateau.continuation import follow
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.problem import make_problem
 from eulerplateau.special_points import SpecialPoint, branches_from, special_points

@@ -14,14 +14,8 @@ from diagram import SETTINGS, Diagram
 from shapes import fitted_order
 
 from eulerplateau import newton
-from eulerplateau.continuation import (
-    BranchPoint,
-    Settings,
-    advance,
-    along,
-    follow,
-    load_derivative,
-)
+from eulerplateau.branch_point import BranchPoint, Settings, along, load_derivative
+from eulerplateau.continuation import advance, follow
 from eulerplateau.mesh import FloatArray
 from eulerplateau.symmetry import loop_distance
 

@@ -12,7 +12,7 @@ import pytest
 import scipy.linalg
 from diagram import SETTINGS, Diagram
 
-from eulerplateau.continuation import BranchPoint
+from eulerplateau.branch_point import BranchPoint
 from eulerplateau.exploration import Limits, Visit, explore
 from eulerplateau.mesh import FloatArray
 from eulerplateau.motions import rigid_motions

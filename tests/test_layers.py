@@ -27,7 +27,7 @@ LAYERS = (
     "coarsening conjugate_gradient descent loop_model modes newton plane_chain "
     "plane_newton primal_dual shifted_inverse soap_newton stability trial_space "
     "trust_region",
-    "continuation exploration special_points stretch",
+    "branch_point continuation exploration special_points stretch",
     "branch_plots ensemble gallery output planar_plots plots render run_plots runs",
     "__main__ cli",
 )

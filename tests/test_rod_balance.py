@@ -21,7 +21,7 @@ import pytest
 import shapes
 import soap_films
 
-from eulerplateau.continuation import BranchPoint
+from eulerplateau.branch_point import BranchPoint
 from eulerplateau.curvature import LoopFrame, loop_frame
 from eulerplateau.mesh import DiskMesh, FloatArray
 

@@ -7,11 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapes
 import soap_films
 
 from eulerplateau import newton
 from eulerplateau.area_film import AreaFilm
-from eulerplateau.continuation import BranchPoint, follow
+from eulerplateau.branch_point import BranchPoint, first_point
+from eulerplateau.continuation import follow
 from eulerplateau.exploration import Limits, Visit, explore
 from eulerplateau.mesh import DiskMesh
 from eulerplateau.planar import planar_film
@@ -127,3 +129,23 @@ def test_load_of_the_twist_converges_at_second_order() -> None:
     ]
     order = np.log2((loads[1] - loads[0]) / (loads[2] - loads[1]))
     assert order == pytest.approx(2.0, abs=0.2)
+
+
+def test_branch_from_the_disk_turns_into_the_two_lobed_film_on_an_uneven_mesh() -> None:
+    """Where the disk is not quite round the pitchfork at 48 pi^3 is imperfect: its two
+    branches miss each other narrowly, and a step must not leap from one to the other."""
+    points, triangles = shapes.disk_points(6, 0.1)
+    mesh = shapes.mesh_of(points * [1.0, 0.999], triangles)
+    found = newton.solve(make_problem(mesh, "area"), mesh.x, np.zeros(mesh.n_b), 1400.0)
+    problem = make_problem(mesh, "area").near(found.x)
+    start = first_point(problem, found.x[mesh.loop], 1400.0, soap_films.SETTINGS)
+    limits = Limits(0, 2, stop=lambda point: point.load > 1700)
+    branch = [visit.point for visit in explore(start, soap_films.SETTINGS, limits)]
+    assert branch[-1].load > 1700
+    for point in branch:
+        assert point.stability.n_unstable == 0
+        # To the mesh's own error both limits of the imperfect pitchfork are exact films.
+        exact = planar_film(2, point.load)
+        assert energy(point) == pytest.approx(exact.energy, rel=0.01)
+    along, across, _ = np.linalg.svd(branch[-1].x - branch[-1].x.mean(axis=0))[1]
+    assert across < 0.6 * along

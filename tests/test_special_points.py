@@ -12,7 +12,8 @@ from diagram import SETTINGS, Diagram
 from equilibria import planar
 from shapes import fitted_order
 
-from eulerplateau.continuation import BranchPoint, Settings, advance, follow
+from eulerplateau.branch_point import BranchPoint, Settings
+from eulerplateau.continuation import advance, follow
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.problem import Problem, make_problem
 from eulerplateau.special_points import (

@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from eulerplateau import newton
 from eulerplateau.area_film import AreaFilm
-from eulerplateau.continuation import BranchPoint, Settings, first_point
+from eulerplateau.branch_point import BranchPoint, Settings, first_point
 from eulerplateau.errors import SpecError
 from eulerplateau.exploration import Limits, Visit, explore
 from eulerplateau.load import FILM_LOADS, Load

@@ -11,6 +11,7 @@ import numpy as np
 from eulerplateau.conformal.eight import flat_eight
 from eulerplateau.conformal.equilibrium import ConformalFilm
 from eulerplateau.conformal.geometry import surface
+from eulerplateau.mesh import FloatArray
 from eulerplateau.output.figure import (
     BLACK,
     BLUE,
@@ -28,6 +29,16 @@ if TYPE_CHECKING:
 _LOAD = r"$\hat\sigma=\sigma L^3/\alpha$"
 _COLOURS = {"two-lobed": BLUE, "twisted": VERMILION, "saddle": GREEN}
 _RADII, _ANGLES = 24, 192
+# Degrees from which films are seen, the direction to there, and how far along it (in L) a
+# loop is drawn in front of its film.
+_ELEVATION, _AZIMUTH, _NEARER = 28.0, -62.0, 0.004
+_TO_EYE = np.array(
+    [
+        np.cos(np.radians(_ELEVATION)) * np.cos(np.radians(_AZIMUTH)),
+        np.cos(np.radians(_ELEVATION)) * np.sin(np.radians(_AZIMUTH)),
+        np.sin(np.radians(_ELEVATION)),
+    ]
+)
 # Films in the gallery: branch and load.
 _SHOWN = (
     ("two-lobed", 1800.0),
@@ -150,6 +161,8 @@ def draw_shapes(path: Path, films: dict[str, list[ConformalFilm]]) -> None:
 
 
 def _draw_surface(ax: Any, film: ConformalFilm) -> None:
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
     whole = surface(film)
     radii = np.linspace(1e-3, 1, _RADII)
     points = whole.points
@@ -158,16 +171,38 @@ def _draw_surface(ax: Any, film: ConformalFilm) -> None:
     phi = 2 * pi * np.arange(_ANGLES + 1) / _ANGLES
     theta = film.basis.grading.theta(phi) % (2 * pi)
     index = np.round(theta / (2 * pi) * points).astype(int) % points
-    x, y, z = np.moveaxis(rings[:, index], -1, 0)
-    ax.plot_surface(
-        x, y, z, color="#BFD9EE", linewidth=0, antialiased=False, rcount=60, ccount=200
+    grid = rings[:, index]
+    corners = [grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]]
+    quads = np.stack(corners, axis=2).reshape(-1, 4, 3)
+    colours = _shaded(quads)
+    # The loop's pieces are polygons too, so that all are drawn in the order of their depth;
+    # a little nearer to the eye than the film they bound.
+    loop = grid[-1] + _NEARER * _TO_EYE
+    pieces = np.stack([loop[:-1], loop[1:], loop[1:], loop[:-1]], axis=1)
+    black = np.tile([0.0, 0.0, 0.0, 1.0], (len(pieces), 1))
+    ax.add_collection3d(
+        Poly3DCollection(
+            np.concatenate([quads, pieces]),
+            facecolors=np.concatenate([colours, black]),
+            edgecolors=np.concatenate([colours, black]),
+            linewidths=np.repeat([0.2, 1.4], [len(quads), len(pieces)]),
+        )
     )
-    ax.plot(x[-1], y[-1], z[-1], color=BLACK, lw=1.4)
     half = 0.215
     ax.set(xlim=(-half, half), ylim=(-half, half), zlim=(-half / 2, half / 2))
     ax.set_box_aspect((2, 2, 1), zoom=1.45)
-    ax.view_init(elev=28, azim=-62)
+    ax.view_init(elev=_ELEVATION, azim=_AZIMUTH)
     ax.set_axis_off()
+
+
+def _shaded(quads: FloatArray) -> FloatArray:
+    """Return the colours (n, 4) of quadrilaterals (n, 4, 3), lighter towards the light."""
+    normals = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    light = np.array([0.3, -0.5, 0.8]) / np.sqrt(0.98)
+    brightness = 0.55 + 0.45 * np.abs(normals @ light)
+    shade = np.array([0.749, 0.851, 0.933])
+    return np.column_stack([brightness[:, None] * shade, np.ones(len(quads))])
 
 
 def _split(

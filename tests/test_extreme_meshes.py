@@ -28,9 +28,14 @@ def test_stretched_polygon_and_its_turned_renumbered_twin_agree_or_both_are_refu
     case = cases.stretched(hexagon(), factor)
     one = cases.run(case, film, load)
     two = cases.run(cases.renumbered(cases.rotated(case)), film, load)
-    if one.word in ("converged", "unresolved"):
+    words = {one.word, two.word}
+    if words <= {"converged", "unresolved"}:
         assert_same(one, two)
-    assert two.word == one.word
+        assert len(words) == 1
+    else:
+        # A loop that has folded flat onto a line ends at a saddle or in a minimum that its
+        # mesh cannot carry, as rounding will have it; but is not said to have converged.
+        assert "converged" not in words
 
 
 @pytest.mark.parametrize("sides", [3, 4, 5, 6])

@@ -31,7 +31,7 @@ _COLOURS = {"two-lobed": BLUE, "twisted": VERMILION, "saddle": GREEN}
 _RADII, _ANGLES = 24, 192
 # Degrees from which films are seen, the direction to there, and how far along it (in L) a
 # loop is drawn in front of its film.
-_ELEVATION, _AZIMUTH, _NEARER = 28.0, -62.0, 0.004
+_ELEVATION, _AZIMUTH, _NEARER = 28.0, -62.0, 0.025
 _TO_EYE = np.array(
     [
         np.cos(np.radians(_ELEVATION)) * np.cos(np.radians(_AZIMUTH)),
@@ -185,7 +185,7 @@ def _draw_surface(ax: Any, film: ConformalFilm) -> None:
             np.concatenate([quads, pieces]),
             facecolors=np.concatenate([colours, black]),
             edgecolors=np.concatenate([colours, black]),
-            linewidths=np.repeat([0.2, 1.4], [len(quads), len(pieces)]),
+            linewidths=1.0,  # one for all: matplotlib sorts colours by depth, not widths
         )
     )
     half = 0.215

@@ -37,9 +37,12 @@ _NO_PART = 1e-3
 # Arclength at which a branch is left for another: far enough for two distinct solutions
 # to be told apart, close enough to be certain of landing on the wanted one.
 _SWITCHING_STEP = 2e-3
+# Part of the film's pull below which what moves the loop is rounding: a true film does not
+# move a round one at all.
+_IDLE = 1e-6
 # Part of an eigenvalue's change that it may be short of zero where it changes sign; and how
 # many times what rounding makes of it the change has to be.
-_LEAP, _CLEAR = 0.01, 1e3
+_LEAP, _CLEAR = 1e-5, 1e3
 # Relative difference of loads below which two modes are lost together.
 _TOGETHER = 1e-6
 # Part of a pure change of load that a direction may have and still count as level: near
@@ -218,7 +221,9 @@ def _step_along(
 
 def _part_along(point: BranchPoint, mode: FloatArray) -> float:
     slope = load_derivative(point.problem, point.model)
-    return abs(float(slope @ mode)) / float(np.linalg.norm(slope))
+    pull = point.problem.condensed.force(point.x).ravel() / point.model.scale
+    size = max(float(np.linalg.norm(slope)), _IDLE * float(np.linalg.norm(pull)))
+    return abs(float(slope @ mode)) / size
 
 
 def _describe(

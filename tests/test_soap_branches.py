@@ -149,3 +149,23 @@ def test_branch_from_the_disk_turns_into_the_two_lobed_film_on_an_uneven_mesh() 
         assert energy(point) == pytest.approx(exact.energy, rel=0.01)
     along, across, _ = np.linalg.svd(branch[-1].x - branch[-1].x.mean(axis=0))[1]
     assert across < 0.6 * along
+
+
+def test_round_disk_gives_way_to_two_lobes_any_way_they_lie() -> None:
+    """At 48 pi^3 cos 2 phi and sin 2 phi go together; no load moves a round loop."""
+    mesh = regular_disk()
+    problem = make_problem(mesh, "area").at(mesh.x)
+    start = first_point(problem, mesh.x[mesh.loop], 1380.0, soap_films.SETTINGS)
+    limits = Limits(1, 2, stop=lambda point: point.load > 1600)
+    found = list(explore(start, soap_films.SETTINGS, limits))
+    special = next(visit.special for visit in found if visit.special is not None)
+    assert (special.kind, special.multiplicity, special.n_unstable) == (BIFURCATION, 2, 0)
+    # 36 edges turn by 10 degrees each: an error of some (pi / 18)^2.
+    assert special.point.load == pytest.approx(48 * np.pi**3, rel=(np.pi / 18) ** 2)
+    lobed = [visit.point for visit in found if visit.branch > 0 and visit.special is None]
+    assert len({visit.branch for visit in found}) == 3
+    for point in lobed:
+        assert point.load > special.point.load
+        assert point.stability.n_unstable == 0
+        exact = planar_film(2, point.load)
+        assert energy(point) == pytest.approx(exact.energy, rel=0.01)

@@ -95,6 +95,14 @@ def crumpled(mesh: DiskMesh, size: float) -> FloatArray:
     return mesh.x + size * np.random.default_rng(5).standard_normal(mesh.x.shape)
 
 
+def wave(n: int, size: float) -> FloatArray:
+    """A smooth displacement (n, 3) of a loop, without symmetry, of at most this size."""
+    turns = 2 * np.pi * np.arange(n) / n
+    modes = np.stack([f(k * turns) for k in (2, 3) for f in (np.cos, np.sin)], axis=1)
+    shape: FloatArray = modes @ np.random.default_rng(6).standard_normal((4, 3))
+    return size * shape / np.linalg.norm(shape, axis=1).max()
+
+
 def rotation() -> FloatArray:
     """A proper rotation (3, 3) about no special axis."""
     q, r = np.linalg.qr(np.random.default_rng(7).standard_normal((3, 3)))

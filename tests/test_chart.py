@@ -35,14 +35,6 @@ def chart() -> Chart:
     return chart_at(area(mesh), (mesh.x * [1.1, 1.0, 0.8]) @ turned.T)
 
 
-def wave(chart: Chart, size: float) -> FloatArray:
-    """A smooth displacement (n_b, 3) of the loop."""
-    turns = 2 * np.pi * np.arange(len(chart.film.loop)) / len(chart.film.loop)
-    modes = np.stack([f(k * turns) for k in (2, 3) for f in (np.cos, np.sin)], axis=1)
-    shape: FloatArray = modes @ np.random.default_rng(6).standard_normal((4, 3))
-    return size * shape / np.linalg.norm(shape, axis=1).max()
-
-
 def test_force_on_the_loop_leaves_a_remainder_of_second_order(chart: Chart) -> None:
     x_loop = chart.x[chart.film.loop]
 
@@ -50,13 +42,13 @@ def test_force_on_the_loop_leaves_a_remainder_of_second_order(chart: Chart) -> N
         found = chart.relax(x)
         return found.area, found.force
 
-    slope = twins.taylor_slope(condensed, x_loop, wave(chart, 0.05))
+    slope = twins.taylor_slope(condensed, x_loop, shapes.wave(len(chart.film.loop), 0.05))
     assert slope == pytest.approx(2.0, abs=0.05)
 
 
 def test_film_follows_its_loop_to_first_order(chart: Chart) -> None:
     x_loop = chart.x[chart.film.loop]
-    here, step = chart.relax(x_loop), wave(chart, 1e-5)
+    here, step = chart.relax(x_loop), shapes.wave(len(chart.film.loop), 1e-5)
     there = chart.relax(x_loop + step)
     moved = here.displacement(step)
     np.testing.assert_array_equal(moved[chart.film.loop], step)
@@ -66,7 +58,7 @@ def test_film_follows_its_loop_to_first_order(chart: Chart) -> None:
 
 def test_film_at_rest_has_no_force_along_the_normals_inside(chart: Chart) -> None:
     film = chart.film
-    found = chart.relax(chart.x[film.loop] + wave(chart, 0.02))
+    found = chart.relax(chart.x[film.loop] + shapes.wave(len(chart.film.loop), 0.02))
     along = (found.gradient[film.interior] * chart.normals).sum(axis=1)
     assert np.abs(along).max() < 1e-15
     assert (

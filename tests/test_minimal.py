@@ -109,22 +109,15 @@ def chart() -> Chart:
     return chart_at(film, x, free=True)
 
 
-def wave(chart: Chart, size: float) -> FloatArray:
-    turns = 2 * np.pi * np.arange(len(chart.film.loop)) / len(chart.film.loop)
-    modes = np.stack([f(k * turns) for k in (2, 3) for f in (np.cos, np.sin)], axis=1)
-    shape: FloatArray = modes @ np.random.default_rng(6).standard_normal((4, 3))
-    return size * shape / np.linalg.norm(shape, axis=1).max()
-
-
 def test_free_film_has_its_loops_gradient_and_second_variation_exactly(
     chart: Chart,
 ) -> None:
     """The force is dA/dx_b alone, and linear but for a remainder of second order."""
-    x_loop = chart.x[chart.film.loop] + wave(chart, 1e-3)
+    x_loop = chart.x[chart.film.loop] + shapes.wave(len(chart.film.loop), 1e-3)
     here = chart.relax(x_loop)
     assert pull_inside(chart.film, here.x) < 1e-13
     np.testing.assert_allclose(here.force, here.gradient[chart.film.loop], atol=1e-14)
-    step = wave(chart, 1.0)
+    step = shapes.wave(len(chart.film.loop), 1.0)
     linear = (here.hessian @ step.ravel()).reshape(step.shape)
     sizes = np.geomspace(1e-3, 1e-5, 7).tolist()
     left = [

@@ -30,14 +30,6 @@ def chart() -> Chart:
     return chart_at(area(mesh), (mesh.x * [1.1, 1.0, 0.8]) @ turned.T)
 
 
-def wave(chart: Chart, size: float) -> FloatArray:
-    """A smooth displacement (n_b, 3) of the loop."""
-    turns = 2 * np.pi * np.arange(len(chart.film.loop)) / len(chart.film.loop)
-    modes = np.stack([f(k * turns) for k in (2, 3) for f in (np.cos, np.sin)], axis=1)
-    shape: FloatArray = modes @ np.random.default_rng(6).standard_normal((4, 3))
-    return size * shape / np.linalg.norm(shape, axis=1).max()
-
-
 def whole(chart: Chart, x: FloatArray) -> FloatArray:
     """The Hessian by the loop (3 n_b) and then by the heights (n_i), nothing eliminated."""
     varied, film = chart.variations, chart.film
@@ -52,7 +44,7 @@ def whole(chart: Chart, x: FloatArray) -> FloatArray:
 
 
 def test_condensed_hessian_is_the_schur_complement(chart: Chart) -> None:
-    x_loop = chart.x[chart.film.loop] + wave(chart, 0.01)
+    x_loop = chart.x[chart.film.loop] + shapes.wave(len(chart.film.loop), 0.01)
     found = chart.relax(x_loop)
     hessian, n = whole(chart, found.x), x_loop.size
     coupling = hessian[n:, :n]
@@ -67,7 +59,7 @@ def test_condensed_hessian_has_the_index_of_the_whole(chart: Chart, load: float)
     """Sylvester's law: the eliminated block is positive definite, so the index stays."""
     loop = Loop(np.full(len(chart.film.loop), 1 / len(chart.film.loop)))
     energy = AreaEnergy(loop, chart, load)
-    x_loop = chart.x[chart.film.loop] + wave(chart, 0.01)
+    x_loop = chart.x[chart.film.loop] + shapes.wave(len(chart.film.loop), 0.01)
     condensed = energy.lagrangian_hessian(x_loop, np.zeros(len(chart.film.loop)))
     full, n = load * whole(chart, chart.relax(x_loop).x), len(condensed)
     full[:n, :n] += np.kron(energy.bending, np.eye(3))
@@ -91,7 +83,7 @@ def test_hessian_of_a_flat_film_leaves_a_remainder_of_third_order(oval: DiskMesh
         return found.area - 0.5 * float(moved @ bent), found.force - bent.reshape(-1, 3)
 
     # Steep enough for the film to leave its plane, and its polygon to change.
-    slope = twins.taylor_slope(curved, x_loop, wave(chart, 0.05))
+    slope = twins.taylor_slope(curved, x_loop, shapes.wave(len(chart.film.loop), 0.05))
     assert slope == pytest.approx(3.0, abs=0.1)
 
 
@@ -105,7 +97,7 @@ def test_hessian_is_the_forces_derivative_to_second_order_in_the_mesh(
         mesh = enneper(number, jitter)
         chart = chart_at(area(mesh), mesh.x)
         x_loop = mesh.x[mesh.loop]
-        step = wave(chart, 1e-4)
+        step = shapes.wave(len(chart.film.loop), 1e-4)
         ahead, behind = chart.relax(x_loop + step), chart.relax(x_loop - step)
         curvature = 0.5 * float(np.vdot(ahead.force - behind.force, step))
         found = float(step.ravel() @ chart.relax(x_loop).hessian @ step.ravel())

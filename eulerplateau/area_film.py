@@ -103,12 +103,7 @@ class AreaFilm:
 
     def gather(self, corners: FloatArray) -> FloatArray:
         """Sum what the corners (n_t, 3, 3) hold at each vertex (n_v, 3)."""
-        place = self.triangles.ravel()
-        columns = [
-            np.bincount(place, corners[:, :, d].ravel(), minlength=self.n_v)
-            for d in range(3)
-        ]
-        return np.stack(columns, axis=1)
+        return summed(self.triangles.ravel(), corners.reshape(-1, 3), self.n_v)
 
     def change(self, x: FloatArray, after: FloatArray) -> float:
         """Return area(after) - area(x) with the relative precision of the difference."""
@@ -148,7 +143,7 @@ class AreaFilm:
     @property
     def pairs(self) -> tuple[IntArray, IntArray]:
         """The vertices of every entry (m,) of a matrix (n_v, n_v): its row, its column."""
-        return self._scalar.rows, self._scalar.columns
+        return self._scalar.indices, self._scalar.columns
 
     @cached_property
     def pieces(self) -> list[IntArray]:
@@ -180,26 +175,26 @@ class AreaFilm:
 
 @dataclass(frozen=True)
 class _Pattern:
-    """Where the entries of element matrices go in a sparse one; found once, then filled."""
+    """Where the entries of element matrices go in a sparse one; found once, then filled.
+
+    Attributes
+    ----------
+    indices, indptr : the sparse matrix's, column by column
+    place : (n_t, 3, 3) int, the entry for each pair of a triangle's corners
+    """
 
     indices: IntArray
     indptr: IntArray
     place: IntArray
 
     @classmethod
-    def of(cls, elements: IntArray, n: int) -> _Pattern:
-        """Find the pattern of elements (n_t, m), each coupling its m unknowns."""
-        row = np.repeat(elements, elements.shape[1], axis=1).ravel()
-        column = np.tile(elements, elements.shape[1]).ravel()
+    def of(cls, triangles: IntArray, n: int) -> _Pattern:
+        """Find the pattern of triangles (n_t, 3), each coupling its corners."""
+        row = np.repeat(triangles, 3, axis=1).ravel()
+        column = np.tile(triangles, 3).ravel()
         entries, place = np.unique(column * n + row, return_inverse=True)
         indptr = np.searchsorted(entries, np.arange(n + 1) * n)
-        size = elements.shape[1]
-        return cls(entries % n, indptr, place.reshape(-1, size, size))
-
-    @property
-    def rows(self) -> IntArray:
-        """The row of every entry."""
-        return self.indices
+        return cls(entries % n, indptr, place.reshape(-1, 3, 3))
 
     @cached_property
     def columns(self) -> IntArray:
@@ -216,7 +211,7 @@ class _Pattern:
         return csc_array((entries, self.indices, self.indptr), shape=(n, n))
 
     def fill(self, blocks: FloatArray) -> csc_array:
-        """Return the matrix with the element matrices (n_t, m, m) summed into it."""
+        """Return the matrix with the element matrices (n_t, 3, 3) summed into it."""
         place = self.place.ravel()
         return self.matrix(summed(place, blocks.ravel(), len(self.indices)))
 

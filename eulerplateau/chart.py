@@ -98,6 +98,11 @@ class Relaxed:
         return self.chart.variations.condense(self._second)
 
     @property
+    def factorised(self) -> Condensation | None:
+        """What `condensed` is if it has been asked for, else None."""
+        return self.__dict__.get("condensed")
+
+    @property
     def central(self) -> bool:
         """Whether the film is at rest in the chart made at its own shape."""
         return (
@@ -205,7 +210,7 @@ class Chart:
         """Return the film to begin with: the last, and its response as far as it goes."""
         last = self._recent[0] if self._recent else None
         u = np.zeros(self.variations.size) if last is None else last.u
-        if last is not None and "condensed" in last.__dict__:
+        if last is not None and last.factorised is not None:
             moved = base - last.x
             moved[self.film.interior] += self.variations.displaced(u)
             response = last.response(moved)
@@ -222,8 +227,7 @@ class Chart:
         """Return the film at rest along its normals."""
         variations = self.variations
         assert isinstance(variations, AlongNormals)
-        last = self._recent[0] if self._recent else None
-        inverse = last.condensed if last and "condensed" in last.__dict__ else None
+        inverse = self._recent[0].factorised if self._recent else None
         error, fresh = np.inf, False
         for _ in range(_STEPS):
             force = variations.work(state.gradient)

@@ -133,7 +133,12 @@ def plan(
 
 
 def summed(place: IntArray, values: FloatArray, n: int) -> FloatArray:
-    """Return zeros (n,) with the values (m,) added at their places (m,)."""
+    """Return zeros (n,) with the values (m,) added at their places (m,).
+
+    Of values (m, d) each column apart, (n, d).
+    """
+    if values.ndim == 2:
+        return np.stack([summed(place, column, n) for column in values.T], axis=1)
     # float64 even where nothing is added.
     return np.bincount(place, values, minlength=n).astype(np.float64, copy=False)
 

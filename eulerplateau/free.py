@@ -77,15 +77,18 @@ class Free:
         """Return H m inside (3 n_i,)."""
         i, k = self.film.pairs
         pull = np.einsum("pcd,pd->pc", blocks, moved[k])
-        columns = [summed(i, pull[:, d], self.film.n_v) for d in range(3)]
-        return np.stack(columns, axis=1)[self.film.interior].ravel()
+        return self.work(summed(i, pull, self.film.n_v))
 
     def _stiffened(self, blocks: FloatArray, shift: float) -> FloatArray:
-        i, k = self.film.pairs
-        own = np.flatnonzero(i == k)
         blocks = blocks.copy()
-        blocks[own[:, None], AXES, AXES] += shift
+        blocks[self._own[:, None], AXES, AXES] += shift
         return blocks
+
+    @cached_property
+    def _own(self) -> IntArray:
+        """The pairs of a vertex with itself."""
+        i, k = self.film.pairs
+        return np.flatnonzero(i == k)
 
     @cached_property
     def _pairs_inside(self) -> IntArray:

@@ -26,7 +26,7 @@ from eulerplateau.branch_point import (
 )
 from eulerplateau.continuation import advance, freed
 from eulerplateau.mesh import FloatArray
-from eulerplateau.stretch import Stretch, eigenvalue, load_rate
+from eulerplateau.stretch import Stretch, load_rate
 from eulerplateau.symmetry import ModeSymmetry, mode_symmetry
 
 FOLD, BIFURCATION = "fold", "bifurcation"
@@ -96,7 +96,7 @@ def special_points(
     located = [
         (point, index)
         for index in stretch.crossing
-        if (point := stretch.locate(partial(eigenvalue, index))) is not None
+        if (point := stretch.zero(index)) is not None
     ]
     located.sort(key=lambda pair: pair[0].arclength)
     last = None
@@ -122,11 +122,10 @@ def leaps(before: BranchPoint, after: BranchPoint, settings: Settings) -> bool:
         return False
     stretch = Stretch(before, after, settings)
     for index in stretch.crossing:
-        ends = (end.stability.eigenvalues[index] for end in (before, after))
-        rise = abs(next(ends) - next(ends))
+        rise = stretch.rise(index)
         if rise < _CLEAR * after.stability.error_bound:
             continue
-        point = stretch.locate(partial(eigenvalue, index))
+        point = stretch.zero(index)
         if point is None or abs(point.stability.eigenvalues[index]) > _LEAP * rise:
             return True
     return False
@@ -169,7 +168,7 @@ def _turn(stretch: Stretch) -> SpecialPoint | None:
     if other is None or len(other.crossing) != 1:
         return None
     number = other.crossing[0]
-    point = other.locate(partial(eigenvalue, number))
+    point = other.zero(number)
     if point is None:
         return None
     found = _describe(other, point, number, 1)

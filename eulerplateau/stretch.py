@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -58,6 +59,15 @@ class Stretch:
             return None
         return points[root]
 
+    def zero(self, index: int) -> BranchPoint | None:
+        """Return the point where an eigenvalue that changes sign does so; None if lost."""
+        return self.locate(partial(eigenvalue, index))
+
+    def rise(self, index: int) -> float:
+        """Return by how much an eigenvalue rises, or falls, from one end to the other."""
+        before, after = self.before.stability, self.after.stability
+        return abs(float(after.eigenvalues[index] - before.eigenvalues[index]))
+
     def _between(self, points: dict[float, BranchPoint], step: float) -> BranchPoint:
         below = max(known for known in points if known < step)
         above = min(known for known in points if known > step)
@@ -79,12 +89,8 @@ class Stretch:
 
     def load_error(self, point: BranchPoint, index: int) -> float:
         """Return what rounding in an eigenvalue can have moved the load of its zero by."""
-        rise = (
-            self.after.stability.eigenvalues[index]
-            - self.before.stability.eigenvalues[index]
-        )
         doubt = abs(point.stability.eigenvalues[index]) + point.stability.error_bound
-        arclength = doubt * self.length / max(abs(rise), doubt)
+        arclength = doubt * self.length / max(self.rise(index), doubt)
         # At a fold the load is stationary, elsewhere it changes with the arclength.
         return float(arclength * abs(point.direction.load) + _LOAD_ROUNDING * point.load)
 

@@ -10,10 +10,11 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
-from error_measure import ENOUGH, REPEATS, distance, peak_memory
+from error_measure import distance, timed
 from error_scenes import SADDLE, Scene, chain, gyration
 from scipy.interpolate import CubicSpline
 
@@ -50,22 +51,13 @@ def mesh_free_repeats(scene: Scene, harmonics: int) -> Iterator[dict[str, Any]]:
     start = polygon(scene, vertices)
     # Loads the compiled kernels.
     relaxed(scene, start, 1.0, harmonics)
-    start_up, began = time.process_time(), time.perf_counter()
-    for repeat in range(REPEATS):
-        cpu, wall = time.process_time(), time.perf_counter()
+
+    def run() -> tuple[ConformalFilm | PlaneLoop | None, float, float]:
+        wall = time.perf_counter()
         film = relaxed(scene, start, scene.load, harmonics)
-        cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
-        yield {
-            "repeat": repeat,
-            "set_up": 0.0,
-            "solve": wall,
-            "cpu": cpu,
-            "start_up": start_up,
-            "memory": peak_memory(),
-            **what(scene, film),
-        }
-        if time.perf_counter() - began > ENOUGH:
-            return
+        return film, 0.0, time.perf_counter() - wall
+
+    return timed(run, partial(what, scene))
 
 
 def relaxed(

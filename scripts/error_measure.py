@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from error_scenes import Scene, gyration, lattice, prolong, shape_error
@@ -16,6 +17,8 @@ from error_thresholds import disk_threshold
 from eulerplateau.mesh import DiskMesh, FloatArray
 from eulerplateau.problem import Problem
 from eulerplateau.solution import Equilibrium, Status
+
+Found = TypeVar("Found")
 
 REPEATS = 5
 # Seconds after which a point is not repeated again: points of 2 s are repeated in full.
@@ -26,10 +29,22 @@ def repeated(meshes: list[DiskMesh], scene: Scene, solver: str) -> Iterator[dict
     """Yield what each repeat of a point cost and came to."""
     # Loads the compiled kernels and whatever is imported late.
     solved([lattice(3, 1.0)], replace(scene, load=1.0, threshold=None), solver)
+    run = partial(solved, meshes, scene, solver)
+    return timed(run, partial(what, scene, meshes[-1]))
+
+
+def timed(
+    run: Callable[[], tuple[Found, float, float]],
+    describe: Callable[[Found], dict[str, Any]],
+) -> Iterator[dict[str, Any]]:
+    """Yield what each repeat of `run` cost and came to, which `describe` says.
+
+    It returns what was found and the wall seconds of set-up and solving.
+    """
     start_up, began = time.process_time(), time.perf_counter()
     for repeat in range(REPEATS):
         cpu = time.process_time()
-        found, set_up, solve = solved(meshes, scene, solver)
+        found, set_up, solve = run()
         cpu = time.process_time() - cpu
         yield {
             "repeat": repeat,
@@ -38,7 +53,7 @@ def repeated(meshes: list[DiskMesh], scene: Scene, solver: str) -> Iterator[dict
             "cpu": cpu,
             "start_up": start_up,
             "memory": peak_memory(),
-            **what(scene, meshes[-1], found),
+            **describe(found),
         }
         if time.perf_counter() - began > ENOUGH:
             return

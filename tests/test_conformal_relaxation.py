@@ -14,12 +14,17 @@ from eulerplateau.conformal.geometry import waist
 from eulerplateau.conformal.grading import FloatArray, Grading, dirichlet_form
 from eulerplateau.conformal.relaxation import relax
 from eulerplateau.conformal.rod_kernels import loop_derivatives, loop_energy
-from eulerplateau.conformal.sector import Sector, crowding_of, make_sector, nome_of
+from eulerplateau.conformal.sector import Sector, crowding_of, make_sector
 from eulerplateau.conformal.spectrum import morse_index
 from eulerplateau.errors import SpecError
 from eulerplateau.planar import planar_film
 
 SECTORS = {"two lobes": 2, "three lobes": 3, "four lobes": 4}
+
+
+def nome_of(crowding: float) -> float:
+    """The nome of a grid of this crowding: the disk is a cylinder of its height."""
+    return float(np.exp(-2 * Grading(crowding).height))
 
 
 def ellipse(aspect: float, points: int, height: float = 0.1) -> FloatArray:

@@ -24,7 +24,7 @@ from math import exp, log, pi
 import numpy as np
 
 from eulerplateau.conformal.basis import TWISTED, Basis, Family
-from eulerplateau.conformal.grading import FloatArray, Grading
+from eulerplateau.conformal.grading import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.mesh import IntArray
 
@@ -202,11 +202,6 @@ def _columns(lobes: int, harmonics: int) -> tuple[FloatArray, IntArray]:
         [np.full(len(w), number) for w, number in zip(waves, parts, strict=True)]
     )
     return np.concatenate(waves).astype(np.float64), part
-
-
-def nome_of(crowding: float) -> float:
-    """Return the nome of a grid of this crowding (grading.py)."""
-    return exp(-2 * Grading(crowding).height)
 
 
 def crowding_of(nome: float) -> float:

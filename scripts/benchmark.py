@@ -28,12 +28,13 @@ import numpy as np
 from benchmark_report import draw, report, summary, write_csv
 from threadpoolctl import threadpool_limits
 
-from eulerplateau import conjugate_gradient, newton
-from eulerplateau.loop import backward_differences
-from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.meshing import MeshSpec, generate
-from eulerplateau.parameters import validate
-from eulerplateau.problem import Problem, make_problem
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.loop import backward_differences
+from eulerplateau.mesh import MeshSpec, generation as generate
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.settings import validate
+from eulerplateau.solvers import conjugate_gradient, newton
+from eulerplateau.solvers.problem import Problem, make_problem
 
 SIZES = (474, 2000, 7500, 50_000, 200_000)
 SOLVERS: dict[str, Callable[..., Any]] = {

@@ -21,14 +21,14 @@ import numpy as np
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
-from eulerplateau.condensed import loop_energy
-from eulerplateau.inextensible import project_lengths
-from eulerplateau.load import FILM_LOADS
-from eulerplateau.mesh import FloatArray
-from eulerplateau.meshing import MeshSpec, generate
-from eulerplateau.parameters import validate
-from eulerplateau.problem import Problem, make_problem
-from eulerplateau.tangent import TangentModel, tangent_model
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film.load import FILM_LOADS
+from eulerplateau.loop.lengths import project_lengths
+from eulerplateau.mesh import MeshSpec, generation as generate
+from eulerplateau.settings import validate
+from eulerplateau.solvers.condensed import loop_energy
+from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 
 PI3 = np.pi**3
 # sigma_hat, derived in docs/films.md. Springs have no planar one: their meshes are not

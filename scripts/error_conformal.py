@@ -18,11 +18,11 @@ from error_measure import distance, timed
 from error_scenes import SADDLE, Scene, chain, gyration
 from scipy.interpolate import CubicSpline
 
-from eulerplateau.conformal import ConformalFilm, relax
-from eulerplateau.conformal.sector import make_sector
-from eulerplateau.mesh import FloatArray
-from eulerplateau.solution import Status
-from eulerplateau.tangent_angle import PlaneLoop, relax_in_plane
+from eulerplateau.arrays import FloatArray
+from eulerplateau.exact.conformal import ConformalFilm, relax
+from eulerplateau.exact.conformal.sector import make_sector
+from eulerplateau.exact.tangent_angle.relaxation import PlaneLoop, relax_in_plane
+from eulerplateau.solvers.equilibrium import Status
 
 CONFORMAL, TANGENT_ANGLE = "conformal", "tangent angle"
 # Harmonics of the whole loop; in the plane those of a lobe.

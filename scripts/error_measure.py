@@ -14,9 +14,10 @@ import numpy as np
 from error_scenes import Scene, gyration, lattice, prolong, shape_error
 from error_thresholds import disk_threshold
 
-from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.problem import Problem
-from eulerplateau.solution import Equilibrium, Status
+from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers.equilibrium import Equilibrium, Status
+from eulerplateau.solvers.problem import Problem
 
 Found = TypeVar("Found")
 
@@ -66,8 +67,8 @@ def solved(
 
     Carrying the shape from mesh to mesh counts as solving.
     """
-    from eulerplateau import conjugate_gradient, newton
-    from eulerplateau.problem import make_problem
+    from eulerplateau.solvers import conjugate_gradient, newton
+    from eulerplateau.solvers.problem import make_problem
 
     solve = {"newton": newton.solve, "cg": conjugate_gradient.solve}[solver]
     x, found, steps = scene.start(meshes[0]), None, 0
@@ -96,8 +97,8 @@ def solved(
 
 def saddle_in_plane(problem: Problem, x: FloatArray, load: float) -> Equilibrium:
     """Return the equilibrium next to x (n_v, 3) in the plane, whatever its index."""
-    from eulerplateau.plane_energy import PlaneEnergy
-    from eulerplateau.plane_newton import settle_in_plane
+    from eulerplateau.film.plane_energy import PlaneEnergy
+    from eulerplateau.solvers.in_plane.newton import settle_in_plane
 
     x, loop = x.copy(), problem.loop_vertices
     flat = settle_in_plane(PlaneEnergy(problem.loop, load), x[loop, :2], 100)

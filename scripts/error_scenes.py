@@ -15,12 +15,13 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
-from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.meshing import MeshSpec, generate
-from eulerplateau.meshing.polygon import ellipse, stretched_hexagon
-from eulerplateau.parameters import validate
-from eulerplateau.planar import PlanarFilm, planar_film
-from eulerplateau.problem import make_problem
+from eulerplateau.arrays import FloatArray
+from eulerplateau.exact.planar import PlanarFilm, planar_film
+from eulerplateau.mesh import MeshSpec, generation as generate
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.polygon import ellipse, stretched_hexagon
+from eulerplateau.settings import validate
+from eulerplateau.solvers.problem import make_problem
 
 # Edge length deep inside over edge length at the loop, of graded meshes.
 GRADING = 4.0

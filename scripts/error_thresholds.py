@@ -6,11 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from eulerplateau.condensed import loop_energy
-from eulerplateau.inextensible import project_lengths
-from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.problem import Problem
-from eulerplateau.tangent import TangentModel, tangent_model
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.lengths import project_lengths
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers.condensed import loop_energy
+from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 
 # Loads to start the secant from, whatever the film.
 _FIRST, _SECOND = 1000.0, 3000.0

@@ -36,7 +36,7 @@ from error_scenes import SCENES, Scene, gyration, prolong
 from evolver import EvolverRun, find_evolver, relax, run_evolver
 from evolver_files import film_datafile, gradient_script, start_script, string_datafile
 
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh.disk import DiskMesh
 
 # Seconds beyond ENOUGH after which a solver is given up, on finer meshes too: 20 s in all.
 TOO_SLOW = 10.0

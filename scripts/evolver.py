@@ -23,7 +23,8 @@ from evolver_files import (
     string_datafile,
 )
 
-from eulerplateau.mesh import DiskMesh, FloatArray
+from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh.disk import DiskMesh
 
 # Debian's name for double precision; the plain name is an alternative that may be another.
 PROGRAMS = ("evolver-nox-d", "evolver")

@@ -21,7 +21,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eulerplateau.mesh import DiskMesh, FloatArray, IntArray, directed_edges
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.mesh.disk import (
+    DiskMesh,
+)
+from eulerplateau.mesh.triangles import (
+    directed_edges,
+)
 
 # A Newton step that lowers the energy by less than this share is the last: the error left
 # is about its square. The slow progress before that is never as slow.

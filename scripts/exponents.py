@@ -12,15 +12,15 @@ import click
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from eulerplateau.branch_point import Settings, first_point
-from eulerplateau.curvature import loop_frame, total_gauss_curvature
-from eulerplateau.exploration import Limits, explore
-from eulerplateau.mesh import DiskMesh
-from eulerplateau.meshing import load_mesh
-from eulerplateau.newton import solve
-from eulerplateau.problem import Problem, make_problem
+from eulerplateau.branches.exploration import Limits, explore
+from eulerplateau.branches.point import Settings, first_point
+from eulerplateau.branches.scaling import fit_power
+from eulerplateau.mesh import load_mesh
+from eulerplateau.mesh.curvature import loop_frame, total_gauss_curvature
+from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.runs.sweep import sweep
-from eulerplateau.scaling import fit_power
+from eulerplateau.solvers.newton import solve
+from eulerplateau.solvers.problem import Problem, make_problem
 
 MESHES = Path(__file__).parents[1] / "meshes"
 FILMS = {"stretched hexagon": "elongated.vtp", "regular hexagon": "hexagon.vtp"}

@@ -12,14 +12,20 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from eulerplateau import conjugate_gradient, newton
+from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
-from eulerplateau.load import FILM_LOADS
-from eulerplateau.measures import measure, waist_path
-from eulerplateau.mesh import DiskMesh, FloatArray, IntArray
-from eulerplateau.problem import Problem, make_problem
-from eulerplateau.solution import Equilibrium, Status
-from eulerplateau.tangent import tangent_model
+from eulerplateau.film.load import FILM_LOADS
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.measures import (
+    measure,
+)
+from eulerplateau.mesh.waist import (
+    waist_path,
+)
+from eulerplateau.solvers import conjugate_gradient, newton
+from eulerplateau.solvers.equilibrium import Equilibrium, Status
+from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.second_variation import tangent_model
 
 # A film that the cases are to be tried on too is one more word here.
 FILMS = ("springs", "dirichlet", "area")

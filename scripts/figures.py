@@ -15,14 +15,15 @@ from tempfile import TemporaryDirectory
 import click
 import numpy as np
 
-from eulerplateau.output.figure import save
-from eulerplateau.output.table import Row
-from eulerplateau.planar import thresholds
-from eulerplateau.planar_plots import plot_energy, plot_gallery
-from eulerplateau.run_plots import Run, read_runs, runs_figure
-from eulerplateau.run_plots.onset import fit_onset
+from eulerplateau.exact.planar import thresholds
+from eulerplateau.pictures.comparison import runs_figure
+from eulerplateau.pictures.curves import Run, read_runs
+from eulerplateau.pictures.figure import save
+from eulerplateau.pictures.onset import fit_onset
+from eulerplateau.pictures.planar import plot_energy, plot_gallery
 from eulerplateau.runs.spec import load_run
-from eulerplateau.runs.sweep import carry_out
+from eulerplateau.runs.sweep import run_sweep
+from eulerplateau.runs.table import Row
 
 ROOT = Path(__file__).parents[1]
 # Integral of |kappa_n| ds up to which a film is flat, as in scripts/transitions.
@@ -179,7 +180,7 @@ def draw_bifurcation(path: Path) -> list[Number]:
 
 def carried_out(name: str, folder: Path) -> Run:
     """Carry out runs/NAME.toml and return the run."""
-    carry_out(load_run(ROOT / "runs" / f"{name}.toml", {}), folder / name)
+    run_sweep(load_run(ROOT / "runs" / f"{name}.toml", {}), folder / name)
     return read_runs([folder / name])[0]
 
 

@@ -17,18 +17,19 @@ import click
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from eulerplateau import newton
-from eulerplateau.area_film import AreaFilm
-from eulerplateau.branch_point import BranchPoint, Settings, first_point
-from eulerplateau.chart import chart_at
-from eulerplateau.continuation import follow
-from eulerplateau.harmonic import moved_with
-from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.meshing import MeshSpec, generate
-from eulerplateau.minimal import minimal
-from eulerplateau.parameters import validate
-from eulerplateau.problem import make_problem
-from eulerplateau.special_points import SpecialPoint, branches_from, special_points
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.continuation import follow
+from eulerplateau.branches.point import BranchPoint, Settings, first_point
+from eulerplateau.branches.special import SpecialPoint, branches_from, special_points
+from eulerplateau.film.area import AreaFilm
+from eulerplateau.film.harmonic import moved_with
+from eulerplateau.film.interior import chart_at
+from eulerplateau.film.minimal_surface import minimal
+from eulerplateau.mesh import MeshSpec, generation as generate
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.settings import validate
+from eulerplateau.solvers import newton
+from eulerplateau.solvers.problem import make_problem
 
 # Loop edges of disks, and the load of the films that are compared.
 LOOPS = (48, 72, 96, 144)

@@ -10,9 +10,9 @@ import extreme_cases as cases
 import numpy as np
 from extreme_cases import Disk, Outcome
 
-from eulerplateau.mesh import FloatArray, IntArray
-from eulerplateau.meshing import MeshSpec, generate
-from eulerplateau.solution import Status
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.mesh import MeshSpec, generation as generate
+from eulerplateau.solvers.equilibrium import Status
 
 # Flat and long (springs: twisted) on the hexagon stretched to twice its length; below the
 # disk's first threshold, where there is one minimum only.

@@ -19,13 +19,14 @@ import numpy as np
 from scipy.optimize import minimize
 from threadpoolctl import threadpool_limits
 
-from eulerplateau import newton
-from eulerplateau.area_film import AreaFilm, area
-from eulerplateau.loop import Loop
-from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.meshing import load_mesh
-from eulerplateau.planar import planar_film
-from eulerplateau.problem import make_problem
+from eulerplateau.arrays import FloatArray
+from eulerplateau.exact.planar import planar_film
+from eulerplateau.film.area import AreaFilm, area
+from eulerplateau.loop.loop import Loop
+from eulerplateau.mesh import load_mesh
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers import newton
+from eulerplateau.solvers.problem import make_problem
 
 MESH = Path(__file__).resolve().parent.parent / "meshes" / "elongated.vtp"
 LOADS = (1400.0, 1600.0, 1800.0)

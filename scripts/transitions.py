@@ -33,16 +33,26 @@ from transitions_report import (
     write_csv,
 )
 
-from eulerplateau.curvature import loop_frame, total_gauss_curvature
-from eulerplateau.load import FILM_LOADS, SPRING_TENSION
-from eulerplateau.measures import WaistPath, waist_path, waist_twist
-from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.newton import solve
-from eulerplateau.parameters import validate
-from eulerplateau.problem import Problem, make_problem
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film.load import FILM_LOADS, SPRING_TENSION
+from eulerplateau.mesh.curvature import loop_frame, total_gauss_curvature
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.waist import (
+    WaistPath,
+    waist_path,
+    waist_twist,
+)
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.sweep import Solver, make_mesh, start_shape, sweep
-from eulerplateau.solution import Equilibrium, Status
+from eulerplateau.runs.sweep import (
+    Solver,
+    make_mesh,
+    start_shape,
+    sweep,
+)
+from eulerplateau.settings import validate
+from eulerplateau.solvers.equilibrium import Equilibrium, Status
+from eulerplateau.solvers.newton import solve
+from eulerplateau.solvers.problem import Problem, make_problem
 
 # Contour integral of |kappa_n| up to which a film is flat. Flat films have 1e-12; near a
 # transition it is 2 to 7 sqrt(load / onset - 1), which moves the onset by less than 1e-6.

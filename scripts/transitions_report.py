@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eulerplateau.load import FILM_LOADS, SPRING_TENSION
+from eulerplateau.film.load import FILM_LOADS, SPRING_TENSION
 
 DISK, EIGHT, DOUBLE, BENT = "disk", "figure eight", "double disk", "not flat"
 # Names of transitions, by the states below and above them.

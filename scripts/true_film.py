@@ -31,14 +31,20 @@ from true_film_family import family_fit
 from true_film_figures import draw_all
 from true_film_held import landscape
 
-from eulerplateau.conformal.basis import ABOUT_X, TWISTED
-from eulerplateau.conformal.branch import BranchPoint, go_to_load, locate, start, switch
-from eulerplateau.conformal.eight import flat_eight
-from eulerplateau.conformal.eight_modes import planar_modes, transverse_modes
-from eulerplateau.conformal.equilibrium import ConformalFilm
-from eulerplateau.conformal.geometry import edge, waist
-from eulerplateau.conformal.spectrum import Mode, morse_index
-from eulerplateau.planar import planar_film, thresholds
+from eulerplateau.exact.conformal.basis import ABOUT_X, TWISTED
+from eulerplateau.exact.conformal.branch import (
+    BranchPoint,
+    go_to_load,
+    locate,
+    start,
+    switch,
+)
+from eulerplateau.exact.conformal.eight import flat_eight
+from eulerplateau.exact.conformal.eight_modes import planar_modes, transverse_modes
+from eulerplateau.exact.conformal.equilibrium import ConformalFilm
+from eulerplateau.exact.conformal.geometry import edge, waist
+from eulerplateau.exact.conformal.second_variation import Mode, morse_index
+from eulerplateau.exact.planar import planar_film, thresholds
 
 ROOT = Path(__file__).parents[1]
 PER_LOAD = 2 * np.sqrt(3)  # sigma_hat / (k L^3 / alpha)

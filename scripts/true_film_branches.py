@@ -7,8 +7,8 @@ from math import pi
 
 import numpy as np
 
-from eulerplateau.conformal.basis import ABOUT_Z, PLANAR, TWISTED, make_basis
-from eulerplateau.conformal.branch import (
+from eulerplateau.exact.conformal.basis import ABOUT_Z, PLANAR, TWISTED, make_basis
+from eulerplateau.exact.conformal.branch import (
     BranchPoint,
     change_basis,
     go_to_load,
@@ -16,9 +16,9 @@ from eulerplateau.conformal.branch import (
     resolve,
     switch,
 )
-from eulerplateau.conformal.equilibrium import ConformalFilm, disk
-from eulerplateau.conformal.geometry import edge, waist
-from eulerplateau.conformal.spectrum import Mode, modes, morse_index
+from eulerplateau.exact.conformal.equilibrium import ConformalFilm, disk
+from eulerplateau.exact.conformal.geometry import edge, waist
+from eulerplateau.exact.conformal.second_variation import Mode, modes, morse_index
 
 # Films are refined until the last tenth of their harmonics is this small.
 TAIL = 1e-10

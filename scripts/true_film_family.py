@@ -7,9 +7,9 @@ from math import pi
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from eulerplateau.conformal.basis import TWISTED, make_basis
-from eulerplateau.conformal.energy import terms
-from eulerplateau.conformal.equilibrium import ConformalFilm
+from eulerplateau.exact.conformal.basis import TWISTED, make_basis
+from eulerplateau.exact.conformal.energy import terms
+from eulerplateau.exact.conformal.equilibrium import ConformalFilm
 
 # Points of the loop that are compared, and quadrature of the family's area.
 _POINTS, _ANGLES, _RADII = 400, 400, 40

@@ -8,20 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eulerplateau.conformal.eight import flat_eight
-from eulerplateau.conformal.equilibrium import ConformalFilm
-from eulerplateau.conformal.geometry import surface
-from eulerplateau.mesh import FloatArray
-from eulerplateau.output.figure import (
-    BLACK,
-    BLUE,
-    GREEN,
-    ORANGE,
-    VERMILION,
-    frame,
-    save,
-)
-from eulerplateau.planar import planar_film
+from eulerplateau.arrays import FloatArray
+from eulerplateau.exact.conformal.eight import flat_eight
+from eulerplateau.exact.conformal.equilibrium import ConformalFilm
+from eulerplateau.exact.conformal.geometry import surface
+from eulerplateau.exact.planar import planar_film
+from eulerplateau.pictures.figure import BLACK, BLUE, GREEN, ORANGE, VERMILION, frame, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from true_film_branches import PLANAR_BUCKLING, planar_start
 
-from eulerplateau.conformal.basis import PLANAR, make_basis
-from eulerplateau.conformal.branch import go_to_load
-from eulerplateau.conformal.equilibrium import ConformalFilm, disk
-from eulerplateau.conformal.geometry import waist
-from eulerplateau.conformal.held import HeldFilm, hold, sharpened
+from eulerplateau.exact.conformal.basis import PLANAR, make_basis
+from eulerplateau.exact.conformal.branch import go_to_load
+from eulerplateau.exact.conformal.equilibrium import ConformalFilm, disk
+from eulerplateau.exact.conformal.geometry import waist
+from eulerplateau.exact.conformal.held_waist import HeldFilm, hold, sharpened
 
 
 @dataclass(frozen=True)

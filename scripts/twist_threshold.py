@@ -18,17 +18,19 @@ import numpy as np
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
-from eulerplateau import newton
-from eulerplateau.area_film import area
-from eulerplateau.condensation import condense
-from eulerplateau.loop import Loop
-from eulerplateau.mesh import DiskMesh
-from eulerplateau.meshing import MeshSpec, generate
-from eulerplateau.meshing.polygon import ellipse_perimeter
-from eulerplateau.parameters import validate
-from eulerplateau.problem import make_problem
-from eulerplateau.solution import Equilibrium
-from eulerplateau.tangent import stress_stiffness
+from eulerplateau.film.area import area
+from eulerplateau.film.condensation import condense
+from eulerplateau.loop.energy import (
+    stress_stiffness,
+)
+from eulerplateau.loop.loop import Loop
+from eulerplateau.mesh import MeshSpec, generation as generate
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.polygon import ellipse_perimeter
+from eulerplateau.settings import validate
+from eulerplateau.solvers import newton
+from eulerplateau.solvers.equilibrium import Equilibrium
+from eulerplateau.solvers.problem import make_problem
 
 # The start, an ellipse, fixes which way the lobes lie and nothing else.
 ASPECT = 2.0

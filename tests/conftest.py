@@ -9,12 +9,12 @@ import pytest
 
 # Loaded before the threads are counted: scipy brings a BLAS of its own.
 import scipy.linalg  # noqa: F401
-import shapes
 from threadpoolctl import threadpool_limits
 
-from eulerplateau.mesh import DiskMesh
-from eulerplateau.meshing import load_mesh
-from eulerplateau.problem import Problem, make_problem
+from eulerplateau.mesh import load_mesh
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers.problem import Problem, make_problem
+from tests.helpers import shapes
 
 ROOT = Path(__file__).parents[1]
 

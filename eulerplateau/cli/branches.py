@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.settings import load_single
+from eulerplateau.cli.overrides import load_single
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:
-    from eulerplateau.output.table import BranchRow
-    from eulerplateau.runs.branches import Exploration
-    from eulerplateau.runs.spec import RunSpec
+    from eulerplateau.runs import BranchRow, Exploration, RunSpec
 
 
 @click.command()
@@ -46,7 +44,7 @@ def branches(
     result = _explore(run, folder, quiet)
     drawn = ["branches.csv", "special_points.csv", "branches.pvd"]
     if pictures:
-        from eulerplateau.branch_plots import draw_branches
+        from eulerplateau.pictures import draw_branches
 
         if draw_branches(folder):
             drawn.append("branches.png")
@@ -63,10 +61,10 @@ def branches(
 
 
 def _explore(run: RunSpec, folder: Path, quiet: bool) -> Exploration:
-    from eulerplateau.runs.branches import carry_out
+    from eulerplateau.runs import run_branches
 
     if quiet:
-        return carry_out(run, folder)
+        return run_branches(run, folder)
     from tqdm import tqdm
 
     with tqdm(desc=folder.name, unit="point", dynamic_ncols=True) as bar:
@@ -78,7 +76,7 @@ def _explore(run: RunSpec, folder: Path, quiet: bool) -> Exploration:
             )
             bar.update()
 
-        return carry_out(run, folder, show)
+        return run_branches(run, folder, show)
 
 
 def _report(result: Exploration, drawn: list[str]) -> None:

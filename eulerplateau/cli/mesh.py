@@ -22,7 +22,7 @@ def mesh(spec: Path, output: Path, quiet: bool) -> None:
 
     SPEC may also be a mesh file, which is then checked and converted.
     """
-    from eulerplateau.meshing import load_mesh, write_mesh
+    from eulerplateau.mesh import load_mesh, write_mesh
 
     made = load_mesh(spec)
     write_mesh(made, output)

@@ -23,7 +23,7 @@ def table(as_json: bool) -> None:
     """Print where n-lobed films buckle, touch in a point, and touch along a line."""
     from dataclasses import asdict
 
-    from eulerplateau.planar import LOBES, thresholds
+    from eulerplateau.exact.planar import LOBES, thresholds
 
     rows = [asdict(thresholds(n)) for n in LOBES]
     if as_json:
@@ -45,7 +45,7 @@ def shape(lobes: int, sigma_hat: float, as_json: bool) -> None:
 
     Regimes: disk (up to the buckling threshold), buckled, point-contact, line-contact.
     """
-    from eulerplateau.planar import planar_film
+    from eulerplateau.exact.planar import planar_film
 
     film = planar_film(lobes, sigma_hat)
     names = ("energy", "area", "kappa_max", "kappa_min", "beta_hat")
@@ -69,7 +69,7 @@ def shape(lobes: int, sigma_hat: float, as_json: bool) -> None:
 def figures(out: Path, quiet: bool) -> None:
     """Draw the gallery of shapes (n = 2 ... 5) and the energies (n = 2, 3)."""
     from eulerplateau.errors import OutputError
-    from eulerplateau.planar_plots import ENERGY, GALLERY, draw_figures
+    from eulerplateau.pictures import ENERGY, GALLERY, draw_figures
 
     try:
         out.mkdir(parents=True, exist_ok=True)

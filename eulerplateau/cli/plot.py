@@ -33,8 +33,7 @@ def plot(folders: tuple[Path, ...], out: Path, what: str, quiet: bool) -> None:
     needs a dozen loads within 2 % above, as runs/onset.toml has them.
     """
     from eulerplateau.errors import OutputError
-    from eulerplateau.run_plots import draw_plot, read_runs
-    from eulerplateau.run_plots.onset import fit_onset
+    from eulerplateau.pictures import draw_plot, fit_onset, read_runs
 
     if out.suffix.lower() not in _FORMATS:
         raise click.BadParameter(f"{out}: should end in {', '.join(_FORMATS)}")

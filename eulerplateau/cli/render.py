@@ -52,9 +52,8 @@ def render(
     have one view and one scale, so that shapes can be compared; several make a contact
     sheet too.
     """
-    from eulerplateau.gallery import collect
-    from eulerplateau.output.folder import shape_name
-    from eulerplateau.render import (
+    from eulerplateau.pictures.gallery import collect
+    from eulerplateau.pictures.render import (
         SIDES,
         SOAP,
         STILLS,
@@ -63,6 +62,7 @@ def render(
         draw_shapes,
         read_field,
     )
+    from eulerplateau.runs import shape_name
 
     run = collect([folder]).runs[0]
     if everything or (animate == SWEEP and not steps and not loads):

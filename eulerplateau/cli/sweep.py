@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.settings import load_with, parse_setting
+from eulerplateau.cli.overrides import load_with, parse_setting
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError, SpecError
 
 if TYPE_CHECKING:
-    from eulerplateau.output.table import Row
-    from eulerplateau.runs.spec import RunSpec
-    from eulerplateau.runs.sweep import RunResult
+    from eulerplateau.runs import Row, RunResult, RunSpec
 
 
 @click.command()
@@ -103,10 +101,10 @@ def _word(value: Any) -> str:
 
 
 def _run(spec: RunSpec, folder: Path, quiet: bool) -> RunResult:
-    from eulerplateau.runs.sweep import carry_out
+    from eulerplateau.runs import run_sweep
 
     if quiet:
-        return carry_out(spec, folder)
+        return run_sweep(spec, folder)
     from tqdm import tqdm
 
     total = len(spec.loads())
@@ -118,20 +116,20 @@ def _run(spec: RunSpec, folder: Path, quiet: bool) -> RunResult:
             )
             bar.update()
 
-        return carry_out(spec, folder, show)
+        return run_sweep(spec, folder, show)
 
 
 def _draw(result: RunResult, pictures: bool, render: bool) -> list[str]:
     """Draw what was asked for; return the names of what was drawn."""
     drawn = []
     if pictures:
-        from eulerplateau.plots import draw_diagram
+        from eulerplateau.pictures import draw_diagram
 
         if draw_diagram(result.folder):
             drawn.append("diagram.png")
     if render:
-        from eulerplateau.output.states import distinct_steps
-        from eulerplateau.render import draw_shapes
+        from eulerplateau.pictures.render import draw_shapes
+        from eulerplateau.runs import distinct_steps
 
         steps = distinct_steps(result.rows)
         if draw_shapes(result.folder, steps):

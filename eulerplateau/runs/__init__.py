@@ -1,1 +1,5 @@
 """Runs: what a specification says, and the sweep that carries it out."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

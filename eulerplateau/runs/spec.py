@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 
 from eulerplateau.errors import SpecError
-from eulerplateau.load import FILM_LOADS
-from eulerplateau.meshing import MeshSpec
-from eulerplateau.parameters import Settings, read_toml, validate
+from eulerplateau.film import FILM_LOADS
+from eulerplateau.mesh import MeshSpec
+from eulerplateau.settings import Settings, read_toml, validate
 
 
 class StoredMesh(Settings):

@@ -16,19 +16,17 @@ import numpy as np
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from eulerplateau import __version__
-from eulerplateau.load import FILM_LOADS, Load
-from eulerplateau.measures import measure, waist_path
-from eulerplateau.mesh import DiskMesh, FloatArray
-from eulerplateau.meshing import generate, load_mesh
-from eulerplateau.output.folder import RunFolder
-from eulerplateau.output.table import Row
-from eulerplateau.problem import Problem, make_problem
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film import FILM_LOADS, Load
+from eulerplateau.mesh import DiskMesh, generate, load_mesh, measure, waist_path
+from eulerplateau.runs.folder import RunFolder
 from eulerplateau.runs.spec import RunSpec, StoredMesh
-from eulerplateau.solution import Equilibrium
+from eulerplateau.runs.table import Row
+from eulerplateau.solvers import Equilibrium, Problem, displaced, make_problem
 
 Solver = Callable[[Problem, FloatArray, FloatArray, float], Equilibrium]
 
-SOLVER_MODULES = {"newton": "newton", "cg": "conjugate_gradient"}
+SOLVER_MODULES = {"newton": "solvers.newton", "cg": "solvers.conjugate_gradient"}
 
 # Matrices here are as large as the loop: a second thread waits more than it works.
 BLAS_THREADS = 1
@@ -53,7 +51,7 @@ class RunResult:
         return [row for row in self.rows if not row.converged]
 
 
-def carry_out(
+def run_sweep(
     spec: RunSpec, path: Path, on_row: Callable[[Row], None] = lambda row: None
 ) -> RunResult:
     """Run `spec` into the folder `path`, calling `on_row` as each row is on disk.
@@ -105,7 +103,7 @@ def _modes(spec: RunSpec, problem: Problem, found: Equilibrium) -> dict[str, Flo
     if spec.output.modes == 0:
         return {}
     # Loaded only where it is asked for: a sweep by cg has no use for newton's modules.
-    from eulerplateau.modes import lowest_modes
+    from eulerplateau.solvers import lowest_modes
 
     return lowest_modes(problem, found, spec.output.modes)
 
@@ -141,11 +139,8 @@ def sweep(
 
 
 def start_shape(spec: RunSpec, mesh: DiskMesh) -> FloatArray:
-    """Return the mesh with every vertex displaced at random across its mean plane."""
-    centred = mesh.x[mesh.loop] - mesh.x[mesh.loop].mean(axis=0)
-    across = np.linalg.svd(centred)[2][2]
-    noise = np.random.default_rng(spec.start.seed).standard_normal(mesh.n_v)
-    return mesh.x + np.outer(spec.start.displacement * noise, across)
+    """Return the first shape (n_v, 3) of a run."""
+    return displaced(mesh, spec.start.displacement, spec.start.seed)
 
 
 def make_solver(spec: RunSpec) -> Solver:

@@ -1,0 +1,111 @@
+"""A stretch of a branch between two points, and where on it something vanishes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from scipy.optimize import brentq
+
+from eulerplateau.branches.point import NOISE, BranchPoint, Settings, along, correct
+
+_PRECISION = 1e-14
+_LOAD_ROUNDING = 4 * float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A stretch of branch between two neighbouring points."""
+
+    before: BranchPoint
+    after: BranchPoint
+    settings: Settings
+
+    @property
+    def length(self) -> float:
+        """Arclength from one end to the other."""
+        return self.after.arclength - self.before.arclength
+
+    @property
+    def crossing(self) -> range:
+        """Numbers of the eigenvalues that change sign; rounding is no sign."""
+        ends = self.before.stability, self.after.stability
+        fewer, more = sorted(ends, key=lambda end: end.n_unstable)
+        return range(fewer.n_unstable + fewer.n_neutral, more.n_unstable)
+
+    def locate(self, test: Callable[[BranchPoint], float]) -> BranchPoint | None:
+        """Return the point where `test(point)` vanishes; None if it is lost.
+
+        All points are corrected in hyperplanes normal to the direction at `before`, from
+        a guess between known ones: at a bifurcation a point's own direction means nothing,
+        and a long step could land on the other branch.
+        """
+        reach = along(self.before, self.after, self.settings)
+        points = {0.0: self.before, reach: self.after}
+
+        def value(step: float) -> float:
+            if step not in points:
+                points[step] = self._between(points, step)
+            return test(points[step])
+
+        try:
+            if value(0.0) * value(reach) > 0:
+                return None
+            root = brentq(value, 0.0, reach, xtol=_PRECISION, rtol=8.9e-16)
+            value(root)
+        except ArithmeticError:
+            return None
+        return points[root]
+
+    def zero(self, index: int) -> BranchPoint | None:
+        """Return the point where an eigenvalue that changes sign does so; None if lost."""
+        return self.locate(partial(eigenvalue, index))
+
+    def rise(self, index: int) -> float:
+        """Return by how much an eigenvalue rises, or falls, from one end to the other."""
+        before, after = self.before.stability, self.after.stability
+        return abs(float(after.eigenvalues[index] - before.eigenvalues[index]))
+
+    def _between(self, points: dict[float, BranchPoint], step: float) -> BranchPoint:
+        below = max(known for known in points if known < step)
+        above = min(known for known in points if known > step)
+        low, high = points[below], points[above]
+        part = (step - below) / (above - below)
+        guess = low.x + part * (high.x - low.x)
+        load = low.load + part * (high.load - low.load)
+        found = correct(
+            self.before.problem,
+            guess,
+            load,
+            self.before.direction,
+            self.settings,
+            (NOISE, 0.0),
+        )
+        if found is None:
+            raise ArithmeticError
+        return replace(found, arclength=self.before.arclength + step)
+
+    def load_error(self, point: BranchPoint, index: int) -> float:
+        """Return what rounding in an eigenvalue can have moved the load of its zero by."""
+        doubt = abs(point.stability.eigenvalues[index]) + point.stability.error_bound
+        arclength = doubt * self.length / max(self.rise(index), doubt)
+        # At a fold the load is stationary, elsewhere it changes with the arclength.
+        return float(arclength * abs(point.direction.load) + _LOAD_ROUNDING * point.load)
+
+
+def load_rate(level: float, point: BranchPoint) -> float:
+    """Return how fast the load rises along the branch, as zero where below `level`."""
+    rate = point.direction.load
+    return 0.0 if abs(rate) <= level else rate
+
+
+def eigenvalue(index: int, point: BranchPoint) -> float:
+    """Return an eigenvalue, as zero where rounding decides its sign.
+
+    Closer to a bifurcation than that the corrector would follow rounding along the mode.
+    """
+    found = point.stability
+    value = float(found.eigenvalues[index])
+    return 0.0 if abs(value) <= found.error_bound else value

@@ -1,0 +1,105 @@
+"""Pseudo-arclength continuation of equilibria in the load, through folds.
+
+A branch is a curve of loops x(s) and loads l(s). With the tangent model's gradient g,
+Hessian H and b = dg/dl on the tangent space of the constraint, its direction (p, l') solves
+
+    H p + b l' = 0,        |p|^2 + (w l')^2 = 1,
+
+and each point is corrected inside the hyperplane normal to the last direction (Keller
+1977). Stable or not makes no difference here: a root of the forces is sought, no minimum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from eulerplateau.branches.point import (
+    BranchPoint,
+    Direction,
+    Settings,
+    coefficients_of,
+    correct,
+    inner,
+    make_direction,
+)
+from eulerplateau.solvers import Problem, loop_energy
+
+_EASY = 4  # corrections up to which the step may grow
+_STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
+_LEAST_LEAP = 1e-4  # arclength below which a leap is none, but a branch that turns
+
+
+def follow(
+    start: BranchPoint,
+    settings: Settings,
+    stop: Callable[[BranchPoint], bool] = lambda point: False,
+    leaps: Callable[[BranchPoint, BranchPoint], bool] = lambda before, after: False,
+) -> Iterator[BranchPoint]:
+    """Yield the points after `start` until the branch leaves the window or `stop` is true.
+
+    Steps between points of which `leaps` is true are shortened. Ends early where no step,
+    however short, can be corrected.
+    """
+    point, step = start, settings.first_step
+    low, high = settings.load_range
+    for _ in range(settings.max_points):
+        after = None
+        while after is None:
+            after = advance(point, step, settings)
+            if after is None or (step > _LEAST_LEAP and leaps(point, after)):
+                after, step = None, 0.5 * step
+                if step < settings.smallest_step:
+                    return
+        point = recentred(after, settings)
+        yield point
+        if stop(point) or not low <= point.load <= high:
+            return
+        if after.corrections <= _EASY:
+            step = min(1.5 * step, settings.largest_step)
+
+
+def advance(point: BranchPoint, step: float, settings: Settings) -> BranchPoint | None:
+    """Return the branch point at arclength `step` from `point`; None if not corrected."""
+    guess = point.x + step * point.direction.displacement
+    load = point.load + step * point.direction.load
+    problem = point.problem
+    after = correct(problem, guess, load, point.direction, settings)
+    if after is None:
+        return None
+    # A step that turns sharply has landed on a branch that crosses this one.
+    before = _kept(point, after, settings)
+    ahead = inner(problem, before, after.direction, settings)
+    return None if ahead < _STRAIGHT else replace(after, arclength=point.arclength + step)
+
+
+def _kept(point: BranchPoint, after: BranchPoint, settings: Settings) -> Direction:
+    """Return the direction at `point`, as far as its motions are still free at `after`.
+
+    A round loop's sliding is its rotation; once it is not it is taken out (motions.py).
+    """
+    model = after.model
+    if len(point.model.gradient) == len(model.gradient):
+        return point.direction
+    coefficients = coefficients_of(model, point.direction.displacement)
+    return make_direction(model, coefficients, point.direction.load, settings)
+
+
+def recentred(point: BranchPoint, settings: Settings) -> BranchPoint:
+    """Return the point in a problem made anew at its film, if the film has turned."""
+    if loop_energy(point.problem, point.load).holds(point.x):
+        return point
+    return _anew(point, point.problem.near(point.film), settings)
+
+
+def freed(point: BranchPoint, settings: Settings) -> BranchPoint:
+    """Return the point with its soap film a minimal surface, where that is curved."""
+    return _anew(point, point.problem.freed(point.film), settings)
+
+
+def _anew(point: BranchPoint, problem: Problem, settings: Settings) -> BranchPoint:
+    """Return the point in another problem; itself if it is not found there."""
+    if problem is point.problem:
+        return point
+    found = correct(problem, point.x, point.load, point.direction, settings)
+    return point if found is None else replace(found, arclength=point.arclength)

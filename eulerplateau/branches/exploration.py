@@ -1,0 +1,121 @@
+"""All branches that hang together: follow one, then those that leave it, and so on."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import count
+
+from eulerplateau.branches.continuation import follow
+from eulerplateau.branches.point import BranchPoint, Settings
+from eulerplateau.branches.special import SpecialPoint, branches_from, leaps, special_points
+from eulerplateau.branches.symmetry import loop_distance
+
+# Two special points are one if their loads agree to this (relative) and their loops to
+# this (in L): far above the precision of either, far below what tells branches apart.
+_SAME_LOAD = 1e-6
+_SAME_LOOP = 1e-3
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Where an exploration ends.
+
+    Attributes
+    ----------
+    special_points : int, new branches start from the first so many only
+    unstable_modes : int, a branch is left where it has more
+    stop : predicate on branch points that ends the branch it is on
+    """
+
+    special_points: int = 8
+    unstable_modes: int = 3
+    stop: Callable[[BranchPoint], bool] = lambda point: False
+
+
+@dataclass(frozen=True)
+class Visit:
+    """A point of a branch; `special` is set where it is a fold or a bifurcation.
+
+    Attributes
+    ----------
+    branch : int, counted from 0
+    origin : int or None, the number of the special point the branch starts from
+    number : int or None, of the special point; a known one keeps its number
+    """
+
+    branch: int
+    origin: int | None
+    point: BranchPoint
+    special: SpecialPoint | None = None
+    number: int | None = None
+    known: bool = False
+
+
+@dataclass(order=True, frozen=True)
+class _Lead:
+    """A branch to follow: those from more stable points first, then as found."""
+
+    n_unstable: int
+    order: int
+    start: BranchPoint = field(compare=False)
+    origin: int | None = field(compare=False)
+
+
+def explore(start: BranchPoint, settings: Settings, limits: Limits) -> Iterator[Visit]:
+    """Yield the points of the branch through `start`, then of those that leave it."""
+    order = count()
+    leads = [_Lead(0, next(order), start, None)]
+    found: list[SpecialPoint] = []
+    for branch in count():
+        if not leads:
+            return
+        lead = heapq.heappop(leads)
+        for visit in _trace(lead, branch, settings, limits, found):
+            yield visit
+            special = visit.special
+            if special is None or visit.known or len(found) > limits.special_points:
+                continue
+            for first in branches_from(special, settings):
+                heapq.heappush(
+                    leads, _Lead(special.n_unstable, next(order), first, visit.number)
+                )
+
+
+def _trace(
+    lead: _Lead,
+    branch: int,
+    settings: Settings,
+    limits: Limits,
+    found: list[SpecialPoint],
+) -> Iterator[Visit]:
+    """Yield one branch; special points not met before are added to `found`."""
+    yield Visit(branch, lead.origin, lead.start)
+    before = lead.start
+    leap = partial(leaps, settings=settings)
+    for after in follow(lead.start, settings, limits.stop, leap):
+        for special in special_points(before, after, settings):
+            number = _number(special, found)
+            known = number < len(found)
+            if not known:
+                found.append(special)
+            yield Visit(branch, lead.origin, special.point, special, number, known)
+            if special.arrived:
+                return
+        yield Visit(branch, lead.origin, after)
+        if after.stability.n_unstable > limits.unstable_modes:
+            return
+        # Where rounding hides an eigenvalue's sign, the next point decides.
+        if not after.stability.n_neutral or before.stability.n_neutral:
+            before = after
+
+
+def _number(special: SpecialPoint, found: list[SpecialPoint]) -> int:
+    """Return the number of a special point, the next free one if it is new."""
+    for number, other in enumerate(found):
+        near = abs(special.point.load / other.point.load - 1) < _SAME_LOAD
+        if near and loop_distance(special.point.x, other.point.x) < _SAME_LOOP:
+            return number
+    return len(found)

@@ -1,0 +1,245 @@
+"""Folds and bifurcations on a branch: found between two points, located, left by.
+
+Let phi be the Hessian's null vector at such a point and b = dg/dl. Where b.phi does not
+vanish the branch folds; where it does, two branches cross there, with directions
+
+    (phi, 0)   and   (q, 1),   H q = -b,  q.phi = 0,
+
+up to a mixture that symmetry forbids at a pitchfork (Keller 1977; Seydel 2010, ch. 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.between import Stretch, load_rate
+from eulerplateau.branches.continuation import advance, freed
+from eulerplateau.branches.point import (
+    BranchPoint,
+    Direction,
+    Settings,
+    correct,
+    load_derivative,
+    make_direction,
+)
+from eulerplateau.branches.symmetry import ModeSymmetry, mode_symmetry
+
+FOLD, BIFURCATION = "fold", "bifurcation"
+
+# |b.phi| / |b| below which b has no part along phi. Symmetric points reach 1e-8; folds on
+# these films have 0.1 and more.
+_NO_PART = 1e-3
+# Arclength at which a branch is left for another: far enough for two distinct solutions
+# to be told apart, close enough to be certain of landing on the wanted one.
+_SWITCHING_STEP = 2e-3
+# Part of the film's pull below which what moves the loop is rounding: a true film does not
+# move a round one at all.
+_IDLE = 1e-6
+# Part of an eigenvalue's change that it may be short of zero where it changes sign; and how
+# many times what rounding makes of it the change has to be.
+_LEAP, _CLEAR = 1e-5, 1e3
+# Relative difference of loads below which two modes are lost together.
+_TOGETHER = 1e-6
+# Part of a pure change of load that a direction may have and still count as level: near
+# enough to a pitchfork to cross over, not so near that its equations are singular.
+_LEVEL = 0.02
+# Where a branch is almost level all along: the part of its steepest that counts as level.
+_LEVELLED = 0.25
+
+
+@dataclass(frozen=True)
+class SpecialPoint:
+    """A point where an eigenvalue of the second variation vanishes.
+
+    Attributes
+    ----------
+    kind : FOLD or BIFURCATION
+    point : the equilibrium; at a bifurcation its direction is (q, 1), towards higher loads
+    mode : (n_b, 3) float, the critical displacement phi
+    eigenvalue : float, what is left of the critical eigenvalue
+    load_error : float
+        What rounding in the eigenvalue can have moved the load by.
+    n_unstable : int, negative eigenvalues not counting the critical one
+    multiplicity : int, eigenvalues that vanish together
+    symmetry : which symmetries phi breaks
+    arrived : bool
+        Whether the branch it was found on is the one along phi, which ends here: beyond
+        lies its mirror image.
+    """
+
+    kind: str
+    point: BranchPoint
+    mode: FloatArray
+    eigenvalue: float
+    load_error: float
+    n_unstable: int
+    multiplicity: int
+    symmetry: ModeSymmetry
+    arrived: bool = False
+
+
+def special_points(
+    before: BranchPoint, after: BranchPoint, settings: Settings
+) -> Iterator[SpecialPoint]:
+    """Yield the special points between two neighbouring points, in order of arclength."""
+    stretch = Stretch(before, after, settings)
+    if before.direction.load * after.direction.load < 0:
+        found = _turn(stretch)
+        if found is not None:
+            yield found
+        return
+    located = [
+        (point, index)
+        for index in stretch.crossing
+        if (point := stretch.zero(index)) is not None
+    ]
+    located.sort(key=lambda pair: pair[0].arclength)
+    last = None
+    for point, _ in located:
+        # Symmetric loops lose several modes at once: one event, and one set of branches.
+        if last is not None and abs(point.load / last - 1) < _TOGETHER:
+            continue
+        last = point.load
+        together = [i for other, i in located if abs(other.load / last - 1) < _TOGETHER]
+        found = _describe(stretch, point, min(together), len(together))
+        # The eigenvalue of an all but free rotation wanders about zero: no event.
+        if found.load_error < _TOGETHER * point.load:
+            yield found
+
+
+def leaps(before: BranchPoint, after: BranchPoint, settings: Settings) -> bool:
+    """Return whether a step has left its branch for another that passes close by.
+
+    Where two branches miss each other narrowly, as an imperfect mesh makes those of a
+    bifurcation do, an eigenvalue then changes sign without being zero in between.
+    """
+    if before.direction.load * after.direction.load < 0:
+        return False
+    stretch = Stretch(before, after, settings)
+    for index in stretch.crossing:
+        rise = stretch.rise(index)
+        if rise < _CLEAR * after.stability.error_bound:
+            continue
+        point = stretch.zero(index)
+        if point is None or abs(point.stability.eigenvalues[index]) > _LEAP * rise:
+            return True
+    return False
+
+
+def branches_from(special: SpecialPoint, settings: Settings) -> Iterator[BranchPoint]:
+    """Yield a first point on each side of the other branch through a bifurcation."""
+    if special.kind == FOLD:
+        return
+    model = special.point.model
+    away = special.point.direction
+    if not special.arrived:
+        coefficients = model.basis.T @ (special.mode.ravel() * model.scale)
+        away = make_direction(model, coefficients, 0.0, settings)
+    for direction in (away, away.reversed()):
+        found = _step_along(special.point, direction, _SWITCHING_STEP, settings)
+        if found is not None:
+            yield replace(freed(found, settings), arclength=_SWITCHING_STEP)
+
+
+def _turn(stretch: Stretch) -> SpecialPoint | None:
+    """Return the fold, or the bifurcation the branch passes across at extreme load.
+
+    A pitchfork's side branch crosses the other branch where its own load is extreme. Both
+    its halves are mirror images, so there its critical eigenvalue touches zero, while at a
+    fold it crosses. Its equations are singular there, so the point is located on the other
+    branch.
+    """
+    ends = stretch.before.direction.load, stretch.after.direction.load
+    level = min(_LEVEL * stretch.settings.load_unit, _LEVELLED * max(np.abs(ends)))
+    near = stretch.locate(partial(load_rate, level))
+    if near is None:
+        return None
+    index = int(np.abs(near.stability.eigenvalues).argmin())
+    if stretch.crossing:
+        extreme = stretch.locate(partial(load_rate, 0.0))
+        fold = None if extreme is None else _describe(stretch, extreme, index, 1)
+        return fold if fold is not None and fold.kind == FOLD else None
+    other = _across(stretch, near, index)
+    if other is None or len(other.crossing) != 1:
+        return None
+    number = other.crossing[0]
+    point = other.zero(number)
+    if point is None:
+        return None
+    found = _describe(other, point, number, 1)
+    here = replace(found.point, arclength=_arclength_of_extreme(stretch))
+    return replace(found, point=here, arrived=True)
+
+
+def _arclength_of_extreme(stretch: Stretch) -> float:
+    """Return where on the branch the load is extreme; its rate changes linearly there."""
+    before, after = stretch.before.direction.load, stretch.after.direction.load
+    return stretch.before.arclength + stretch.length * before / (before - after)
+
+
+def _across(stretch: Stretch, extreme: BranchPoint, index: int) -> Stretch | None:
+    """Return the stretch of the other branch that holds the crossing."""
+    settings = stretch.settings
+    direction = _through(extreme, index, settings)
+    back = _step_along(extreme, direction, -_SWITCHING_STEP, settings)
+    if back is None:
+        return None
+    forth = advance(back, 2 * _SWITCHING_STEP, settings)
+    return None if forth is None else Stretch(back, forth, settings)
+
+
+def _through(point: BranchPoint, index: int, settings: Settings) -> Direction:
+    """Return (q, 1) with H q = -b and no part along the null vector `index`.
+
+    At the bifurcation itself the bordered system has two null vectors, so the direction
+    that `correct` finds there is an arbitrary mixture.
+    """
+    values, vectors = point.model.eigen
+    others = np.arange(len(values)) != index
+    slope = vectors[:, others].T @ load_derivative(point.problem, point.model)
+    response = -vectors[:, others] @ (slope / values[others])
+    return make_direction(point.model, response, 1.0, settings)
+
+
+def _step_along(
+    point: BranchPoint,
+    direction: Direction,
+    step: float,
+    settings: Settings,
+) -> BranchPoint | None:
+    guess = point.x + step * direction.displacement
+    return correct(
+        point.problem, guess, point.load + step * direction.load, direction, settings
+    )
+
+
+def _part_along(point: BranchPoint, mode: FloatArray) -> float:
+    slope = load_derivative(point.problem, point.model)
+    pull = point.problem.condensed.force(point.x).ravel() / point.model.scale
+    size = max(float(np.linalg.norm(slope)), _IDLE * float(np.linalg.norm(pull)))
+    return abs(float(slope @ mode)) / size
+
+
+def _describe(
+    stretch: Stretch, point: BranchPoint, index: int, multiplicity: int
+) -> SpecialPoint:
+    values, vectors = point.model.eigen
+    mode = point.model.displacement(vectors[:, index])
+    folds = _part_along(point, vectors[:, index]) > _NO_PART
+    if not folds:
+        point = replace(point, direction=_through(point, index, stretch.settings))
+    return SpecialPoint(
+        kind=FOLD if folds else BIFURCATION,
+        point=point,
+        mode=mode,
+        eigenvalue=float(values[index]),
+        load_error=stretch.load_error(point, index),
+        n_unstable=index,
+        multiplicity=multiplicity,
+        symmetry=mode_symmetry(point.x, mode),
+    )

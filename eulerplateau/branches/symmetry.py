@@ -1,0 +1,83 @@
+"""Which mirrors and half turns a loop has, and which of them a mode breaks.
+
+The operations are those of a rectangular box along the loop's principal axes: mirrors
+across, half turns about, and inversion through the centre. A loop has an operation if the
+operation, together with a shift or reversal of the vertex numbers, brings it back onto
+itself. An unstructured mesh is symmetric only nearly (its plane apart), hence a tolerance.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray, IntArray
+
+# Axes are those of the loop's largest, middle and smallest extent.
+OPERATIONS = {
+    "mirror across long axis": (-1, 1, 1),
+    "mirror across middle axis": (1, -1, 1),
+    "mirror across short axis": (1, 1, -1),
+    "half turn about long axis": (1, -1, -1),
+    "half turn about middle axis": (-1, 1, -1),
+    "half turn about short axis": (-1, -1, 1),
+    "inversion": (-1, -1, -1),
+}
+
+# Root-mean-square mismatch, in units of L: half an edge of the paper's mesh.
+_SAME_SHAPE = 7e-3
+
+
+@dataclass(frozen=True)
+class ModeSymmetry:
+    """What a mode does to a loop's symmetries, and how much of it leaves the plane.
+
+    Attributes
+    ----------
+    breaks, keeps : names in OPERATIONS under which the mode is odd, or even
+    transverse : float
+        Fraction of the mode's square norm along the loop's shortest axis.
+    """
+
+    breaks: tuple[str, ...]
+    keeps: tuple[str, ...]
+    transverse: float
+
+
+def mode_symmetry(x_loop: FloatArray, mode: FloatArray) -> ModeSymmetry:
+    """Classify a displacement `mode` (n_b, 3) of the loop (n_b, 3)."""
+    centred = x_loop - x_loop.mean(axis=0)
+    axes = np.linalg.svd(centred, full_matrices=False)[2]
+    shape, moved = centred @ axes.T, mode @ axes.T
+    numberings = _numberings(len(shape))
+    breaks: list[str] = []
+    keeps: list[str] = []
+    for name, signs in OPERATIONS.items():
+        image = shape * np.array(signs)
+        offsets = np.linalg.norm(image[numberings] - shape, axis=(1, 2))
+        best = int(offsets.argmin())
+        if offsets[best] > _SAME_SHAPE * np.sqrt(len(shape)):
+            continue
+        turned = (moved * np.array(signs))[numberings[best]]
+        parity = float(np.sum(turned * moved) / np.sum(moved * moved))
+        if abs(parity) > 0.5:
+            (keeps if parity > 0 else breaks).append(name)
+    transverse = float(np.sum(moved[:, 2] ** 2) / np.sum(moved**2))
+    return ModeSymmetry(tuple(breaks), tuple(keeps), transverse)
+
+
+def _numberings(n: int) -> IntArray:
+    """Return all 2 n cyclic shifts and reversals of 0 ... n - 1, one per row."""
+    v = np.arange(n)
+    shifts = (v[None, :] + v[:, None]) % n
+    return np.concatenate([shifts, shifts[:, ::-1]])
+
+
+def loop_distance(x_loop: FloatArray, other: FloatArray) -> float:
+    """Return the r.m.s. distance of two loops (n_b, 3) after the best rotation."""
+    a, b = x_loop - x_loop.mean(axis=0), other - other.mean(axis=0)
+    u, _, vt = np.linalg.svd(a.T @ b)
+    handed = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
+    aligned = a @ (u * handed) @ vt
+    return float(np.sqrt(np.mean(np.sum((aligned - b) ** 2, axis=1))))

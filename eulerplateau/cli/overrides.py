@@ -1,0 +1,44 @@
+"""`--set KEY=VALUE,...`: replace keys of a specification from the shell."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from eulerplateau.runs import RunSpec
+
+
+def parse_setting(text: str) -> tuple[str, list[Any]]:
+    """Parse KEY=VALUE,VALUE: TOML values, or bare words."""
+    key, equals, given = text.partition("=")
+    if not equals or not key:
+        raise click.BadParameter(f"{text!r} should be KEY=VALUE,...", param_hint="--set")
+    try:
+        return key, tomllib.loads(f"values = [{given}]")["values"]
+    except tomllib.TOMLDecodeError:
+        return key, given.split(",")
+
+
+def load_with(path: Path, overrides: dict[str, Any]) -> RunSpec:
+    """Read a run specification with keys replaced as on the command line."""
+    from eulerplateau.runs import load_run
+
+    if "mesh.file" in overrides:
+        # Given on the command line, so relative to where the command was given.
+        overrides = {**overrides, "mesh.file": str(Path(overrides["mesh.file"]).absolute())}
+    return load_run(path, overrides)
+
+
+def load_single(path: Path, settings: tuple[str, ...]) -> RunSpec:
+    """Read a run specification; each of `settings` is KEY=VALUE with a single value."""
+    overrides = {}
+    for text in settings:
+        key, values = parse_setting(text)
+        if len(values) != 1:
+            raise click.BadParameter(f"{text!r} should give one value", param_hint="--set")
+        overrides[key] = values[0]
+    return load_with(path, overrides)

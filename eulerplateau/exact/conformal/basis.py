@@ -1,0 +1,210 @@
+"""Loops as trigonometric polynomials, and what their symmetry leaves free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.errors import SpecError
+from eulerplateau.exact.conformal.grading import Grading
+
+# The bending's integrand is no trigonometric polynomial: points per harmonic.
+_POINTS = 4
+# Share of the harmonics, at the high end, whose size measures the error of truncation.
+_TAIL = 0.1
+
+Harmonics = tuple[tuple[str, int], ...]  # ("cos" or "sin", parity of k)
+_BOTH: Harmonics = (("cos", 0), ("cos", 1), ("sin", 0), ("sin", 1))
+
+
+@dataclass(frozen=True)
+class Family:
+    """A symmetry of loops: the harmonics in each of the coordinates x, y and z."""
+
+    name: str
+    harmonics: tuple[Harmonics, Harmonics, Harmonics]
+
+
+def _family(name: str, x: str, y: str, z: str) -> Family:
+    parts = tuple(((c.split()[0], int(c.split()[1])),) if c else () for c in (x, y, z))
+    return Family(name, (parts[0], parts[1], parts[2]))
+
+
+# Two mirror lines in the plane z = 0 (D2h), and the three half-turns about the axes (D2):
+# about x, phi -> -phi; about z, phi -> phi + pi; about y, phi -> pi - phi.
+PLANAR = _family("planar", "cos 1", "sin 1", "")
+TWISTED = _family("all half-turns", "cos 1", "sin 1", "sin 0")
+# Displacements that keep one of the half-turns and break the others.
+ABOUT_X = _family("half-turn about x", "cos 0", "sin 0", "sin 1")
+ABOUT_Y = _family("half-turn about y", "sin 0", "cos 0", "cos 1")
+ABOUT_Z = _family("half-turn about z", "sin 1", "cos 1", "cos 0")
+GENERAL = Family("no symmetry", (_BOTH, _BOTH, _BOTH))
+# Every displacement of a film of TWISTED or PLANAR is a sum of these, and its second
+# variation mixes none of them.
+HALF_TURNS = (TWISTED, ABOUT_X, ABOUT_Y, ABOUT_Z)
+
+
+class Curve(NamedTuple):
+    """The loop at the grid's points: positions and derivatives by phi, each (n, 3)."""
+
+    x: FloatArray
+    x1: FloatArray
+    x2: FloatArray
+
+
+@dataclass(frozen=True)
+class Basis:
+    """Trigonometric polynomials of degree `harmonics` in phi with the symmetry `family`.
+
+    x_a(phi) = sum over the coordinate's columns of c_j cos(k_j phi) or c_j sin(k_j phi),
+    k >= 1: the centre of the loop is at the origin. A loop is the vector (size,) of all
+    c, of x, then y, then z. The grid has 4 points for each harmonic.
+    """
+
+    harmonics: int
+    family: Family
+    crowding: float
+
+    @cached_property
+    def grading(self) -> Grading:
+        """The conformal angle as a function of phi."""
+        return Grading(self.crowding)
+
+    @cached_property
+    def phi(self) -> FloatArray:
+        """The grid (n,)."""
+        n = _POINTS * self.harmonics
+        return 2 * pi * np.arange(n) / n
+
+    @property
+    def weight(self) -> float:
+        """Integral weight of every point of the grid."""
+        return 2 * pi / len(self.phi)
+
+    @cached_property
+    def columns(self) -> tuple[tuple[tuple[str, int], ...], ...]:
+        """For each coordinate its ("cos" or "sin", k)."""
+        return tuple(
+            tuple(
+                (kind, k)
+                for kind, parity in wanted
+                for k in range(1, self.harmonics + 1)
+                if k % 2 == parity
+            )
+            for wanted in self.family.harmonics
+        )
+
+    @cached_property
+    def slices(self) -> tuple[slice, slice, slice]:
+        """Where the coefficients of x, y and z are."""
+        ends = np.cumsum([0, *map(len, self.columns)]).tolist()
+        return slice(*ends[:2]), slice(*ends[1:3]), slice(*ends[2:])
+
+    @property
+    def size(self) -> int:
+        """The number of coefficients."""
+        return len(self.wavenumbers)
+
+    @cached_property
+    def wavenumbers(self) -> FloatArray:
+        """The k of every coefficient (size,)."""
+        return np.array([k for part in self.columns for _, k in part], dtype=np.float64)
+
+    @cached_property
+    def matrices(self) -> tuple[tuple[FloatArray, FloatArray, FloatArray], ...]:
+        """For each coordinate the values of its columns and of their two derivatives."""
+        return tuple(_values(part, self.phi) for part in self.columns)
+
+    @cached_property
+    def dirichlet(self) -> FloatArray:
+        """Q (size, size), c^T Q c / 2 being the Dirichlet energy of the extension.
+
+        Diagonal: on the cylinder that the disk is to phi, its slit glued phi to -phi, the
+        extension of cos k phi has no slope at the slit and that of sin k phi no value.
+        """
+        even = [kind == "cos" for part in self.columns for kind, _ in part]
+        slope = np.tanh(self.wavenumbers * self.grading.height)
+        return np.diag(pi * self.wavenumbers * np.where(even, slope, 1 / slope))
+
+    def curve(self, coefficients: FloatArray) -> Curve:
+        """Return the loop at the points of the grid."""
+        return Curve(
+            *(
+                np.stack(
+                    [
+                        m[order] @ coefficients[part]
+                        for m, part in zip(self.matrices, self.slices, strict=True)
+                    ],
+                    axis=-1,
+                )
+                for order in range(3)
+            )
+        )
+
+    def at(self, coefficients: FloatArray, phi: FloatArray) -> Curve:
+        """Return the loop at any phi (n,)."""
+        parts = [
+            [values @ coefficients[part] for values in _values(columns, phi)]
+            for columns, part in zip(self.columns, self.slices, strict=True)
+        ]
+        x, x1, x2 = (np.stack(order, axis=-1) for order in zip(*parts, strict=True))
+        return Curve(x, x1, x2)
+
+    def project(self, x: FloatArray) -> FloatArray:
+        """Return the coefficients (size,) of values (n, 3) at the grid, least squares."""
+        scale = 2 / len(self.phi)
+        columns = zip(self.matrices, range(3), strict=True)
+        return np.concatenate([scale * (m[0].T @ x[:, axis]) for m, axis in columns])
+
+    def transfer(self, other: Basis, coefficients: FloatArray) -> FloatArray:
+        """Return the coefficients here of a loop of another basis, theta kept."""
+        u = self.grading.stretch * (self.phi - pi / 2)
+        sn, cn, _ = self.grading.functions(u)
+        return self.project(other.at(coefficients, other.grading.phi(sn, cn)).x)
+
+    def embed(self, other: Basis, coefficients: FloatArray) -> FloatArray:
+        """Return the coefficients here of a loop of the same grid, harmonic by harmonic."""
+        found = np.zeros(self.size)
+        for axis in range(3):
+            there = dict(
+                zip(other.columns[axis], coefficients[other.slices[axis]], strict=True)
+            )
+            here = self.columns[axis]
+            found[self.slices[axis]] = [there.get(column, 0.0) for column in here]
+        return found
+
+    def tail(self, coefficients: FloatArray) -> float:
+        """Return the largest k |c_k| in the last tenth of the harmonics over the largest.
+
+        The relative error that truncation leaves in the loop's tangent, roughly.
+        """
+        sizes = self.wavenumbers * np.abs(coefficients)
+        high = self.wavenumbers > (1 - _TAIL) * self.harmonics
+        return float(sizes[high].max() / sizes.max())
+
+
+@lru_cache(maxsize=24)
+def make_basis(harmonics: int, family: Family, crowding: float = 1.0) -> Basis:
+    """Return the basis; raises SpecError unless harmonics >= 4 and 0 < crowding <= 1."""
+    if harmonics < 4:
+        raise SpecError("harmonics", f"found {harmonics}; should be 4 or more")
+    if not 0 < crowding <= 1:
+        raise SpecError("crowding", f"found {crowding}; should be above 0 and at most 1")
+    return Basis(harmonics, family, crowding)
+
+
+def _values(
+    columns: tuple[tuple[str, int], ...], phi: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the columns' values and first two derivatives, each (n, columns)."""
+    k = np.array([k for _, k in columns], dtype=np.float64)
+    # sin = cos shifted by a quarter turn.
+    shift = np.array([0.0 if kind == "cos" else pi / 2 for kind, _ in columns])
+    angle = np.outer(phi, k) - shift
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return cosine, -k * sine, -(k**2) * cosine

@@ -1,0 +1,5 @@
+"""Exact planar films bounded by an elastic loop (docs/planar.md)."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

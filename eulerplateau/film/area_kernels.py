@@ -1,0 +1,150 @@
+"""Compiled loops over a film's triangles: sides, area, its derivatives. See area_film.py.
+
+Side j of a triangle lies opposite its corner j; of corners i and j, j = i + 1 mod 3 comes
+next. Arrays in, arrays out; what sums into an array expects zeros there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from eulerplateau.arrays import FloatArray, IntArray
+
+
+@njit(cache=True)
+def measure(
+    x: FloatArray,
+    triangles: IntArray,
+    edges: FloatArray,
+    normals: FloatArray,
+    areas: FloatArray,
+) -> None:
+    """Fill sides (n_t, 3, 3), unit normals (n_t, 3) and areas (n_t,) of x (n_v, 3).
+
+    The normal of a triangle without area is zero.
+    """
+    for t in range(triangles.shape[0]):
+        for j in range(3):
+            first, second = triangles[t, (j + 1) % 3], triangles[t, (j + 2) % 3]
+            for d in range(3):
+                edges[t, j, d] = x[second, d] - x[first, d]
+        a, b = edges[t, 0], edges[t, 1]
+        size = 0.0
+        for d in range(3):
+            p, q = (d + 1) % 3, (d + 2) % 3
+            normals[t, d] = a[p] * b[q] - a[q] * b[p]
+            size += normals[t, d] * normals[t, d]
+        size = np.sqrt(size)
+        areas[t] = 0.5 * size
+        if size > 0.0:
+            for d in range(3):
+                normals[t, d] /= size
+
+
+@njit(cache=True)
+def sum_gradient(
+    triangles: IntArray, edges: FloatArray, normals: FloatArray, gradient: FloatArray
+) -> None:
+    """Add n x e_j / 2 of every corner j to `gradient` (n_v, 3)."""
+    for t in range(triangles.shape[0]):
+        n = normals[t]
+        for j in range(3):
+            e, v = edges[t, j], triangles[t, j]
+            for d in range(3):
+                p, q = (d + 1) % 3, (d + 2) % 3
+                gradient[v, d] += 0.5 * (n[p] * e[q] - n[q] * e[p])
+
+
+@njit(cache=True)
+def change(x: FloatArray, after: FloatArray, triangles: IntArray) -> float:
+    """Return area(after) - area(x) with the relative precision of the difference.
+
+    Triangle by triangle, |c'| - |c| = (c' - c) . (c' + c) / (|c'| + |c|) for c twice the
+    vector area.
+    """
+    total = 0.0
+    a, b, da, db = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    for t in range(triangles.shape[0]):
+        i, j, k = triangles[t]
+        for d in range(3):
+            a[d], b[d] = x[j, d] - x[i, d], x[k, d] - x[i, d]
+            start = after[i, d] - x[i, d]
+            da[d] = (after[j, d] - x[j, d]) - start
+            db[d] = (after[k, d] - x[k, d]) - start
+        along = sizes = grown = 0.0
+        for d in range(3):
+            p, q = (d + 1) % 3, (d + 2) % 3
+            c = a[p] * b[q] - a[q] * b[p]
+            moved = da[p] * (b[q] + db[q]) - da[q] * (b[p] + db[p])
+            moved += a[p] * db[q] - a[q] * db[p]
+            sizes += c * c
+            grown += (c + moved) * (c + moved)
+            along += moved * (2.0 * c + moved)
+        size = np.sqrt(sizes) + np.sqrt(grown)
+        if size > 0.0:
+            total += along / size
+    return 0.5 * total
+
+
+@njit(cache=True)
+def cotangents(edges: FloatArray, areas: FloatArray, found: FloatArray) -> None:
+    """Fill (e_i . e_j) / (4 A) (n_t, 3, 3): zero for a triangle without an area."""
+    for t in range(edges.shape[0]):
+        for i in range(3):
+            for j in range(3):
+                dot = 0.0
+                for d in range(3):
+                    dot += edges[t, i, d] * edges[t, j, d]
+                found[t, i, j] = dot / (4.0 * areas[t]) if areas[t] > 0.0 else 0.0
+
+
+@njit(cache=True)
+def sum_hessian(
+    cotangent: FloatArray, normals: FloatArray, place: IntArray, blocks: FloatArray
+) -> None:
+    """Add d2A/dx_i dx_j of every triangle to `blocks` (m, 3, 3), at `place` (n_t, 3, 3)."""
+    for t in range(cotangent.shape[0]):
+        n = normals[t]
+        for i in range(3):
+            for j in range(3):
+                block = blocks[place[t, i, j]]
+                # 1 where j follows two after i, -1 where one after, 0 for i = j.
+                turn = 0.5 * (((j - i) % 3 == 2) * 1.0 - ((j - i) % 3 == 1) * 1.0)
+                for d in range(3):
+                    p, q = (d + 1) % 3, (d + 2) % 3
+                    for e in range(3):
+                        block[d, e] += cotangent[t, i, j] * n[d] * n[e]
+                    # Row d of [n]_x: -n_q in column p, n_p in column q.
+                    block[d, p] -= turn * n[q]
+                    block[d, q] += turn * n[p]
+
+
+@njit(cache=True)
+def sum_along(
+    cotangent: FloatArray,
+    normals: FloatArray,
+    triangles: IntArray,
+    directions: FloatArray,
+    place: IntArray,
+    entries: FloatArray,
+) -> None:
+    """Add u_i . d2A/dx_i dx_j u_j to `entries`, at `place` (n_t, 3, 3).
+
+    directions : (n_v, 3), u.
+    """
+    for t in range(triangles.shape[0]):
+        n = normals[t]
+        for i in range(3):
+            u = directions[triangles[t, i]]
+            rise = n[0] * u[0] + n[1] * u[1] + n[2] * u[2]
+            for j in range(3):
+                w = directions[triangles[t, j]]
+                value = (
+                    cotangent[t, i, j] * rise * (n[0] * w[0] + n[1] * w[1] + n[2] * w[2])
+                )
+                turn = 0.5 * (((j - i) % 3 == 2) * 1.0 - ((j - i) % 3 == 1) * 1.0)
+                for d in range(3):
+                    p, q = (d + 1) % 3, (d + 2) % 3
+                    value += turn * u[d] * (n[p] * w[q] - n[q] * w[p])
+                entries[place[t, i, j]] += value

@@ -1,0 +1,114 @@
+"""Static condensation: the film's interior eliminated exactly, once per mesh.
+
+With the Laplacian split into interior (i) and loop (b),
+
+    [L_ii L_ib] [x_i]   [ 0 ]
+    [L_bi L_bb] [x_b] = [ f ]      x_i = -L_ii^-1 L_ib x_b,   f = S x_b,
+                                   S = L_bb - L_bi L_ii^-1 L_ib,
+
+S is the discrete Dirichlet-to-Neumann map; a relaxed film has the energy
+load * tr(x_b^T S x_b).
+
+The interior is eliminated part by part, see elimination.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg.lapack import dpotrs
+from scipy.sparse import csc_array
+from threadpoolctl import threadpool_limits
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film.dissection import dissect
+from eulerplateau.film.elimination import Elimination, Part, plan
+
+
+@dataclass(frozen=True)
+class Condensation:
+    """A factorised interior.
+
+    Attributes
+    ----------
+    stiffness : (n_b, n_b) float, symmetric
+        S, per unit of load.
+    """
+
+    stiffness: FloatArray
+    _order: IntArray
+    _parts: tuple[Part, ...]
+
+    def force(self, x_loop: FloatArray) -> FloatArray:
+        """Return the gradient of tr(x_b^T S x_b) (n_b, 3)."""
+        return 2 * self.stiffness @ x_loop
+
+    def displacement(self, x_loop: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a displacement of its loop (n_b, 3)."""
+        return self.extend(moved)
+
+    def solve(self, forces: FloatArray) -> FloatArray:
+        """Return L_ii^-1 f (n_i,) for forces f on the interior rows, here 0 ... n_i - 1."""
+        n_i = len(forces)
+        order = self._order[:n_i]
+        ordered = np.zeros(len(self._order))
+        ordered[:n_i] = forces[order]
+        for part in self._parts:
+            own = ordered[part.start : part.stop]
+            ordered[part.around] += part.extension.T @ own
+            ordered[part.start : part.stop] = dpotrs(part.factor, own, lower=True)[0]
+        ordered[n_i:] = 0.0
+        for part in reversed(self._parts):
+            ordered[part.start : part.stop] += part.extension @ ordered[part.around]
+        x = np.empty(n_i)
+        x[order] = ordered[:n_i]
+        return x
+
+    def carry(self, forces: FloatArray) -> FloatArray:
+        """Return f_b - L_bi L_ii^-1 f_i (n_b, m): what forces (n, m) come to on the loop.
+
+        The adjoint of `extend`.
+        """
+        ordered = forces[self._order]
+        for part in self._parts:
+            ordered[part.around] += part.extension.T @ ordered[part.start : part.stop]
+        return ordered[len(ordered) - len(self.stiffness) :]
+
+    def extend(self, x_loop: FloatArray) -> FloatArray:
+        """Return the relaxed film (n_v, m) on a loop (n_b, m), coordinate by coordinate."""
+        ordered = np.empty((len(self._order), x_loop.shape[1]))
+        ordered[len(ordered) - len(x_loop) :] = x_loop
+        for part in reversed(self._parts):
+            ordered[part.start : part.stop] = part.extension @ ordered[part.around]
+        x = np.empty_like(ordered)
+        x[self._order] = ordered
+        return x
+
+
+def factorise(elimination: Elimination, entries: FloatArray) -> Condensation:
+    """Eliminate what is to be eliminated of a symmetric matrix with these entries (m,).
+
+    Raises LinAlgError unless that is positive definite. The caller sees to it that BLAS has
+    one thread.
+    """
+    stiffness, parts = elimination.condense(entries)
+    return Condensation(stiffness, elimination.order, parts)
+
+
+def condense(laplacian: csc_array, loop: IntArray, interior: IntArray) -> Condensation:
+    """Eliminate `interior` from `laplacian` (n_v, n_v), symmetric.
+
+    Raises LinAlgError unless what is eliminated is positive definite.
+    """
+    rows = laplacian.tocsr()
+    pieces = dissect(rows, loop, interior)
+    # Blocks of a hundred rows: two threads would mostly wait for each other.
+    with threadpool_limits(1, user_api="blas"):
+        row = np.repeat(np.arange(rows.shape[0]), np.diff(rows.indptr))
+        found = factorise(plan(row, rows.indices, pieces, loop), rows.data)
+    # A translation costs nothing. Where slivers make weights of 1e8 that cancel, rounding
+    # would have it cost something, and leave a pull on the loop that nothing balances.
+    diagonal = np.diag_indices_from(found.stiffness)
+    found.stiffness[diagonal] -= found.stiffness.sum(axis=1)
+    return found

@@ -1,0 +1,83 @@
+"""Nested dissection: a planar graph cut into ever smaller pieces by small separators.
+
+George (1973): eliminate the pieces first and the separators after them, and a
+factorisation of a planar graph's matrix fills in as little as it can, n log n.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import breadth_first_order
+
+from eulerplateau.arrays import IntArray
+
+# Pieces of this many vertices are dense matrices that BLAS multiplies well.
+LARGEST = 128
+# Directions along which a piece may be cut.
+_LANDMARKS = 8
+
+
+def dissect(
+    graph: csr_array, around: IntArray, inside: IntArray, largest: int = LARGEST
+) -> list[IntArray]:
+    """Cut the vertices `inside` a graph (n, n) into parts, to be eliminated in this order.
+
+    Vertices of two parts are neighbours only if one of the parts separates the other from
+    the rest. Distances are counted in edges, from landmarks among the vertices `around`:
+    vertices at one distance from a landmark separate the nearer from the farther. Pieces
+    have up to `largest` vertices.
+    """
+    if len(inside) <= largest:
+        return [inside] if len(inside) else []
+    landmarks = around[np.linspace(0, len(around), _LANDMARKS, endpoint=False, dtype=int)]
+    distance = np.stack([_edges_away(graph, v)[inside] for v in landmarks])
+    # Pieces are numbered like a heap: 1 falls into 2 and 3, n into 2 n and 2 n + 1.
+    piece = np.ones(len(inside), dtype=np.int64)
+    active = np.arange(len(inside))
+    while len(active):
+        active = active[np.argsort(piece[active], kind="stable")]
+        first = np.flatnonzero(np.diff(piece[active], prepend=0))
+        size = np.diff(first, append=len(active))
+        side = _sides(distance[:, active], first, size)
+        # Separators keep the number of the piece they cut.
+        piece[active] = np.where(side == 0, piece[active], 2 * piece[active] + (side > 0))
+        active = active[side != 0]
+        large = np.bincount(piece[active], minlength=1) > largest
+        active = active[large[piece[active]]]
+    order = np.argsort(-piece, kind="stable")
+    cuts = np.flatnonzero(np.diff(piece[order])) + 1
+    return list(np.split(inside[order], cuts))
+
+
+def _sides(distance: IntArray, first: IntArray, size: IntArray) -> IntArray:
+    """Return -1, 0 or 1 for vertices on the near side, the separator and the far side.
+
+    distance : (landmarks, n), vertices sorted by piece; piece p has size[p] vertices from
+    first[p]. Each piece is cut at the median distance from the landmark which it extends
+    farthest from.
+    """
+    extent = np.maximum.reduceat(distance, first, axis=1)
+    extent -= np.minimum.reduceat(distance, first, axis=1)
+    axis = np.repeat(extent.argmax(axis=0), size)
+    chosen = distance[axis, np.arange(len(axis))]
+    number = np.repeat(np.arange(len(size)), size)
+    ranked = chosen[np.lexsort((chosen, number))]
+    side: IntArray = np.sign(chosen - np.repeat(ranked[first + size // 2], size))
+    return side
+
+
+def _edges_away(graph: csr_array, source: int) -> IntArray:
+    """Return the number of edges (n,) between each vertex and `source`."""
+    n = graph.shape[0]
+    reached, ahead = breadth_first_order(graph, source, directed=False)
+    ahead[source] = source
+    steps = np.full(n, n, dtype=np.int64)
+    steps[reached] = 1
+    steps[source] = 0
+    ahead[ahead < 0] = source
+    # Follow each path back to the source, doubling the stride.
+    while (ahead[reached] != source).any():
+        steps[reached] += steps[ahead[reached]]
+        ahead[reached] = ahead[ahead[reached]]
+    return steps

@@ -1,0 +1,163 @@
+"""Where the entries of a sparse symmetric matrix go while part of it is eliminated.
+
+The rows are eliminated part by part (dissection.py). A part is one dense block, a front:
+with what the parts before it have left on it and on the rows around it, it is condensed,
+and what that leaves waits for the front that holds the first of those rows (the
+multifrontal method; Duff and Reid 1983). All this depends on the matrix's pattern alone: it
+is found once and used for every matrix with that pattern.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dpotrf, dtrtrs
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film.elimination_kernels import (
+    add_block,
+)
+
+
+@dataclass(frozen=True)
+class Part:
+    """Rows start ... stop - 1 of the order, which hang on those `around` them.
+
+    In equilibrium x[start:stop] = extension @ x[around]; `factor` is Cholesky's, lower.
+    """
+
+    start: int
+    stop: int
+    around: IntArray
+    extension: FloatArray
+    factor: FloatArray
+
+
+@dataclass(frozen=True)
+class _Front:
+    """A dense block, of rows start ... stop - 1 and of those around them.
+
+    Attributes
+    ----------
+    entries, places : (m,) int, which of the matrix's entries go where in the flat block
+    left : of each front that leaves something here its number, and where in the block
+    """
+
+    start: int
+    stop: int
+    around: IntArray
+    entries: IntArray
+    places: IntArray
+    left: list[tuple[int, IntArray]]
+
+    @property
+    def size(self) -> int:
+        """Rows of the block."""
+        return self.stop - self.start + len(self.around)
+
+    def assemble(self, values: FloatArray, remainders: dict[int, FloatArray]) -> FloatArray:
+        """Return the block (size, size): own rows of the matrix and what others left."""
+        n = self.size
+        block: FloatArray = summed(self.places, values[self.entries], n * n).reshape(n, n)
+        for number, place in self.left:
+            add_block(remainders.pop(number), place, block)
+        return block
+
+
+@dataclass(frozen=True)
+class Elimination:
+    """The order of a matrix's rows, parts first and kept rows last, and all fronts.
+
+    The last front holds the rows that are kept.
+    """
+
+    order: IntArray
+    fronts: tuple[_Front, ...]
+
+    def condense(self, values: FloatArray) -> tuple[FloatArray, tuple[Part, ...]]:
+        """Return what is left of a matrix with these entries (m,), and the parts.
+
+        Raises LinAlgError unless what is eliminated is positive definite. The caller sees
+        to it that BLAS has one thread.
+        """
+        parts: list[Part] = []
+        remainders: dict[int, FloatArray] = {}
+        *inner, kept = self.fronts
+        for number, front in enumerate(inner):
+            own = front.stop - front.start
+            block = front.assemble(values, remainders)
+            extension, remainder, factor = _condense_dense(block, own)
+            parts.append(Part(front.start, front.stop, front.around, extension, factor))
+            remainders[number] = remainder
+        return kept.assemble(values, remainders), tuple(parts)
+
+
+def plan(
+    row: IntArray, column: IntArray, pieces: list[IntArray], kept: IntArray
+) -> Elimination:
+    """Find where entries go while all rows but those `kept` are eliminated, in pieces.
+
+    row, column : (m,), of the entries of a symmetric matrix. Those with the same place are
+    summed; of two that mirror each other across parts the later row's may be missing.
+    """
+    order = np.concatenate([*pieces, kept])
+    place = np.empty(len(order), dtype=np.int64)
+    place[order] = np.arange(len(order))
+    row, column = place[row], place[column]
+    stops = np.cumsum([*(len(piece) for piece in pieces), len(kept)], dtype=np.int64)
+    starts = np.concatenate([[0], stops[:-1]])
+    owner = np.searchsorted(stops, row, side="right")
+    entries = np.flatnonzero(column >= starts[owner])
+    entries = entries[np.argsort(owner[entries], kind="stable")]
+    first = np.searchsorted(owner[entries], np.arange(len(stops) + 1))
+    local = np.empty(len(order), dtype=np.int64)
+    fronts: list[_Front] = []
+    # Fronts whose remainder waits for the front that holds its first row.
+    waiting: list[list[int]] = [[] for _ in stops]
+    for number, (start, stop) in enumerate(
+        zip(starts.tolist(), stops.tolist(), strict=True)
+    ):
+        mine = entries[first[number] : first[number + 1]]
+        below = [fronts[before].around for before in waiting[number]]
+        touched = np.unique(np.concatenate([column[mine], *below]))
+        around = touched[np.searchsorted(touched, stop) :]
+        size = stop - start + len(around)
+        local[start:stop] = np.arange(stop - start)
+        local[around] = np.arange(stop - start, size)
+        places = local[row[mine]] * size + local[column[mine]]
+        left = [(before, local[fronts[before].around]) for before in waiting[number]]
+        fronts.append(_Front(start, stop, around, mine, places, left))
+        if len(around):
+            waiting[int(np.searchsorted(stops, around[0], side="right"))].append(number)
+    return Elimination(order, tuple(fronts))
+
+
+def summed(place: IntArray, values: FloatArray, n: int) -> FloatArray:
+    """Return zeros (n,) with the values (m,) added at their places (m,).
+
+    Of values (m, d) each column apart, (n, d).
+    """
+    if values.ndim == 2:
+        return np.stack([summed(place, column, n) for column in values.T], axis=1)
+    # float64 even where nothing is added.
+    return np.bincount(place, values, minlength=n).astype(np.float64, copy=False)
+
+
+def _condense_dense(
+    block: FloatArray, own: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Eliminate the first `own` rows of a symmetric matrix, of which those are filled.
+
+    Returns -F_11^-1 F_12, F_22 - F_21 F_11^-1 F_12, symmetric to the last bit, and the
+    factor of F_11.
+    """
+    factor, failed = dpotrf(block[:own, :own], lower=True)
+    if failed:
+        raise LinAlgError("what is eliminated is not positive definite")
+    if own == len(block):
+        return np.zeros((own, 0)), np.zeros((0, 0)), factor
+    half, _ = dtrtrs(factor, block[:own, own:], lower=True)
+    extension, _ = dtrtrs(factor, half, lower=True, trans=1)
+    return -extension, block[own:, own:] - half.T @ half, factor

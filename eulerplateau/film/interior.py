@@ -1,0 +1,290 @@
+"""A soap film as a function of its loop: the interior eliminated near one shape.
+
+Sliding inside a flat film costs nothing, so only normal displacements are unknowns there.
+Near a reference shape X with vertex normals n, a loop x_b carries the film
+
+    x_i = X_i + G (x_b - X_b) + n_i u_i,
+
+G the harmonic extension, so that the mesh follows its loop, and u the displacements that
+make the area stationary: n_i . dA/dx_i = 0. That is one trial space, fixed as long as the
+chart is, so the area left over is a smooth function of the loop with the exact gradient
+
+    f = g_b + G^T g_i.
+
+Its second variation with the interior relaxed (by static condensation, as for quadratic
+films) is
+
+    S = T^T H T - (T^T H n) (n^T H n)^-1 (n^T H T),
+
+where T may be (1, G), or any other way in which the mesh follows its loop smoothly: that
+makes a difference of O(h^2), and none on flat films. See variations.py.
+
+What remains of g_i along a curved film is a discretisation error: the area does depend,
+weakly, on where its vertices lie. Near a discrete minimal surface (minimal.py) it is
+removed as well: u are then all displacements inside, g_i = 0, f = g_b, and S is exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film.area import AreaFilm, Sides
+from eulerplateau.film.condensation import Condensation
+from eulerplateau.film.free_moves import Free, at_rest, is_rest
+from eulerplateau.film.harmonic import follower
+from eulerplateau.film.normal_moves import AlongNormals, Variations, along_normals
+
+_STEPS = 30
+# Parts of a predicted change that are tried, as long as triangles fold over.
+_PARTS = 1.0, 0.5, 0.25
+# Part of the error that a step with an old factorised Hessian may leave.
+_SLOW = 0.1
+# Re-weighting brings a rough film near: until it gains less than this part of the area.
+_NEAR = 1e-3
+_REWEIGHTINGS = 6
+# Cosine of the tilt of normals beyond which a chart gives way to a new one, and up to which
+# a film counts as being where its chart was made.
+_TILT = 0.9
+_NO_TILT = 1 - 1e-10
+# Degrees; and the part of its chart's worst angle that a thinner one may have come to.
+THIN = 12.0
+_THINNED = 0.7
+# Cosine by which a triangle may turn from its chart's: beyond it may have folded over.
+_FOLDED = 0.3
+
+
+@dataclass(frozen=True)
+class Relaxed:
+    """A film at rest on its loop, in a chart.
+
+    Attributes
+    ----------
+    x : (n_v, 3) float
+    u : (n_u,) float, how far the interior has moved from where it follows the loop
+    sides : its triangles
+    gradient : (n_v, 3) float, of the area
+    """
+
+    chart: Chart
+    x: FloatArray
+    u: FloatArray
+    sides: Sides
+    gradient: FloatArray
+
+    @property
+    def area(self) -> float:
+        """Area of the film, in units of L^2."""
+        return float(self.sides.areas.sum())
+
+    @cached_property
+    def force(self) -> FloatArray:
+        """Gradient of the area with respect to the loop (n_b, 3)."""
+        return self.chart.carry(self.gradient)
+
+    @property
+    def hessian(self) -> FloatArray:
+        """Second derivative of the area with respect to the loop (3 n_b, 3 n_b)."""
+        stiffness = self.condensed.stiffness
+        return 0.5 * (stiffness + stiffness.T)
+
+    @cached_property
+    def condensed(self) -> Condensation:
+        """The second variation with the interior eliminated."""
+        return self.chart.variations.condense(self._second)
+
+    @property
+    def factorised(self) -> Condensation | None:
+        """What `condensed` is if it has been asked for, else None."""
+        return self.__dict__.get("condensed")
+
+    @property
+    def central(self) -> bool:
+        """Whether the film is at rest in the chart made at its own shape."""
+        return (
+            isinstance(self.chart.variations, Free)
+            or self.chart.tilt(self.sides) > _NO_TILT
+        )
+
+    def displacement(self, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
+        result = self.chart.follow(moved)
+        result[self.chart.film.interior] += self.chart.variations.displaced(
+            self.response(result)
+        )
+        return result
+
+    def response(self, followed: FloatArray) -> FloatArray:
+        """Return how u changes (n_u,) on a film whose mesh has moved (n_v, 3)."""
+        forces = self.chart.variations.forces(self._second, followed)
+        return -self.condensed.solve(forces)
+
+    @cached_property
+    def _second(self) -> FloatArray:
+        return self.chart.film.hessian(self.sides)
+
+
+@dataclass(frozen=True)
+class Chart:
+    """Where the interior of a film is sought.
+
+    Attributes
+    ----------
+    film : the film
+    x : (n_v, 3) float, the reference shape
+    sides : its triangles
+    normals : (n_i, 3) float
+    variations : how interior vertices move: along these normals, or freely
+    """
+
+    film: AreaFilm
+    x: FloatArray
+    sides: Sides
+    normals: FloatArray
+    variations: Variations
+    _follower: Condensation
+    # The last films asked for: a solver comes back to them for force, energy and Hessian.
+    _recent: list[Relaxed] = field(default_factory=list, repr=False, compare=False)
+
+    def follow(self, moved: FloatArray) -> FloatArray:
+        """Return how the mesh (n_v, 3) follows a displacement of the loop (n_b, 3)."""
+        return self._follower.extend(moved)
+
+    def carry(self, gradient: FloatArray) -> FloatArray:
+        """Return g_b + G^T g_i (n_b, 3): what a gradient (n_v, 3) comes to on the loop."""
+        return self._follower.carry(gradient)
+
+    def tilt(self, sides: Sides) -> float:
+        """Return the smallest cosine between a film's normals and the chart's."""
+        now = self.film.vertex_normals(sides)[self.film.interior]
+        return float((now * self.normals).sum(axis=1).min(initial=1.0))
+
+    def holds(self, sides: Sides) -> bool:
+        """Return whether a film is so near that neither it nor triangles turned far."""
+        angle = sides.smallest_angle
+        thin = angle < THIN and angle < _THINNED * self.sides.smallest_angle
+        return not thin and self.unfolded(sides) and self.tilt(sides) > _TILT
+
+    def extend(self, x_loop: FloatArray) -> FloatArray:
+        """Return the relaxed film (n_v, 3) on a loop (n_b, 3)."""
+        return self.relax(x_loop).x
+
+    def force(self, x_loop: FloatArray) -> FloatArray:
+        """Return the gradient of the area with respect to the loop (n_b, 3)."""
+        return self.relax(x_loop).force
+
+    def displacement(self, x_loop: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
+        return self.relax(x_loop).displacement(moved)
+
+    def relax(self, x_loop: FloatArray) -> Relaxed:
+        """Return the film of least area on a loop (n_b, 3).
+
+        Raises LinAlgError if there is none in this chart: the film has torn or folded.
+        """
+        loop = self.film.loop
+        for known in self._recent:
+            if np.array_equal(known.x[loop], x_loop):
+                return known
+        base = self.x + self.follow(x_loop - self.x[loop])
+        base[loop] = x_loop
+        find = self._settled if isinstance(self.variations, Free) else self._newton
+        found = find(base, self._begun(base))
+        self._recent[:] = [found, *self._recent[:1]]
+        return found
+
+    def _at(self, base: FloatArray, u: FloatArray) -> Relaxed | None:
+        """Return the film displaced by u from a mesh (n_v, 3); None if it folds over."""
+        x = base.copy()
+        x[self.film.interior] += self.variations.displaced(u)
+        sides = self.film.sides(x)
+        if not self.unfolded(sides):
+            return None
+        return Relaxed(self, x, u, sides, self.film.gradient(sides))
+
+    def _begun(self, base: FloatArray) -> Relaxed:
+        """Return the film to begin with: the last, and its response as far as it goes."""
+        last = self._recent[0] if self._recent else None
+        u = np.zeros(self.variations.size) if last is None else last.u
+        if last is not None and last.factorised is not None:
+            moved = base - last.x
+            moved[self.film.interior] += self.variations.displaced(u)
+            response = last.response(moved)
+            for part in _PARTS:
+                state = self._at(base, u + part * response)
+                if state is not None:
+                    return state
+        state = self._at(base, u)
+        if state is None:
+            raise LinAlgError("a triangle of the film has folded over")
+        return state
+
+    def _newton(self, base: FloatArray, state: Relaxed) -> Relaxed:
+        """Return the film at rest along its normals."""
+        variations = self.variations
+        assert isinstance(variations, AlongNormals)
+        inverse = self._recent[0].factorised if self._recent else None
+        error, fresh = np.inf, False
+        for _ in range(_STEPS):
+            force = variations.work(state.gradient)
+            before, error = error, float(np.abs(force).max(initial=0.0))
+            if is_rest(state.sides, error, before, fresh):
+                return state
+            fresh = inverse is None or error > _SLOW * before
+            if inverse is None or fresh:
+                inverse = variations.stiffness(state.sides)
+            state = self._descend(base, state, force, inverse)
+        raise LinAlgError("the film does not come to rest")
+
+    def _settled(self, base: FloatArray, state: Relaxed) -> Relaxed:
+        """Return the film at rest by all displacements inside."""
+        assert isinstance(self.variations, Free)
+        x = at_rest(self.variations, state.x)
+        sides, u = self.film.sides(x), (x - base)[self.film.interior].ravel()
+        return Relaxed(self, x, u, sides, self.film.gradient(sides))
+
+    def _descend(
+        self, base: FloatArray, state: Relaxed, force: FloatArray, inverse: Condensation
+    ) -> Relaxed:
+        """Return the film after one Newton step, shortened until the area falls."""
+        step = -inverse.solve(force)
+        slope = float(force @ step)
+        for _ in range(20):
+            after = self._at(base, state.u + step)
+            small = abs(slope) < 1e-15 * state.area
+            if after and (small or self.film.change(state.x, after.x) <= 0.1 * slope):
+                return after
+            step, slope = 0.5 * step, 0.5 * slope
+        raise LinAlgError("no step makes the film smaller")
+
+    def unfolded(self, sides: Sides) -> bool:
+        """Return whether every triangle of a film has the side up that the chart's has."""
+        turned = (sides.normals * self.sides.normals).sum(axis=1)
+        return bool((sides.areas > 0).all() and (turned > _FOLDED).all())
+
+
+def chart_at(film: AreaFilm, x: FloatArray, free: bool = False) -> Chart:
+    """Return the chart at a shape (n_v, 3), which is brought near to rest first.
+
+    free : whether vertices inside may move freely, which takes a discrete minimal surface
+    (minimal.py): on another film not all displacements are resisted.
+
+    Re-weighting: the film that is harmonic with the cotangent weights of the last one has
+    no more area (Pinkall and Polthier 1993).
+    """
+    sides = film.sides(x)
+    for _ in range(_REWEIGHTINGS):
+        following = follower(film, sides)
+        after = following.extend(x[film.loop])
+        if film.change(x, after) > -_NEAR * sides.areas.sum():
+            break
+        x, sides = after, film.sides(after)
+    else:
+        following = follower(film, sides)
+    normals = film.vertex_normals(sides)[film.interior]
+    variations = Free(film) if free else along_normals(film, x, normals)
+    return Chart(film, x, sides, normals, variations, following)

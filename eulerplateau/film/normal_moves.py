@@ -1,0 +1,183 @@
+"""The displacements by which a film is varied, and what its second variation is by them.
+
+Of its interior they are the heights along normals (`AlongNormals`), or all there are
+(free.py); of its loop all. What is inside is eliminated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film.area import AreaFilm, Sides
+from eulerplateau.film.condensation import Condensation, factorise
+from eulerplateau.film.elimination import Elimination, plan, summed
+
+# Width of the strip, in L: a circle's radius is 0.16. Where it reaches the middle between
+# two strands those on either side follow different ones, the less the better.
+_WIDTH = 0.1
+AXES = np.arange(3)
+
+
+class Variations(Protocol):
+    """How the interior of a film may move: n_u unknowns."""
+
+    @property
+    def size(self) -> int:
+        """n_u."""
+
+    def displaced(self, u: FloatArray) -> FloatArray:
+        """Return the displacement (n_i, 3) of unknowns (n_u,)."""
+
+    def work(self, gradient: FloatArray) -> FloatArray:
+        """Return what a gradient (n_v, 3) is by the unknowns (n_u,)."""
+
+    def condense(self, blocks: FloatArray) -> Condensation:
+        """Eliminate the unknowns of a Hessian, given by its blocks (m, 3, 3) of film.pairs.
+
+        What remains is 3 n_b x 3 n_b. Raises LinAlgError unless the area resists them.
+        """
+
+    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return what a displacement (n_v, 3) of all does along the unknowns (n_u,)."""
+
+
+@dataclass(frozen=True)
+class AlongNormals:
+    """Displacements dx_v = n_v u_v + w_v dx_b, u the heights inside, b the leader of v.
+
+    A strip of the film follows the loop. In the continuum the second variation with the
+    interior relaxed is the same however the interior follows its loop, as long as it does
+    so smoothly. On a mesh it differs by what the area depends on the places of its
+    vertices: by O(h^2) where a strip of fixed width follows, by O(h) where none does, by
+    nothing where the film is flat. In a strip each vertex has few neighbours that follow
+    others: matrices stay sparse.
+
+    Attributes
+    ----------
+    film : the film
+    normals : (n_v, 3) float, unit inside, zero on the loop
+    leader : (n_v,) int
+        The number on the loop of the vertex that v follows: of the nearest, or itself.
+    weight : (n_v,) float
+        w: 1 on the loop, falling to 0 smoothly across the strip.
+    """
+
+    film: AreaFilm
+    normals: FloatArray
+    leader: IntArray
+    weight: FloatArray
+
+    @property
+    def size(self) -> int:
+        """One for each vertex inside."""
+        return len(self.film.interior)
+
+    def displaced(self, u: FloatArray) -> FloatArray:
+        """Return n u (n_i, 3)."""
+        return u[:, None] * self.normals[self.film.interior]
+
+    def work(self, gradient: FloatArray) -> FloatArray:
+        """Return n . g (n_i,)."""
+        inside = self.film.interior
+        along: FloatArray = (gradient[inside] * self.normals[inside]).sum(axis=1)
+        return along
+
+    def stiffness(self, sides: Sides) -> Condensation:
+        """Factorise n . H n (n_i, n_i); LinAlgError unless it is positive definite."""
+        entries = self.film.normal_hessian(sides, self.normals).data
+        return factorise(self._inside, entries[self._chosen[0]])
+
+    def condense(self, blocks: FloatArray) -> Condensation:
+        """Eliminate the heights."""
+        heights, coupling, loop = self._chosen
+        i, k = self.film.pairs
+        along = self._along(blocks)
+        up = np.einsum("pc,pc->p", along[heights], self.normals[k[heights]])
+        across = self.weight[k[coupling], None] * along[coupling]
+        weight = self.weight[i[loop]] * self.weight[k[loop]]
+        kept = weight[:, None, None] * blocks[loop]
+        return factorise(
+            self._elimination, np.concatenate([up, across.ravel(), kept.ravel()])
+        )
+
+    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return n . H m (n_i,)."""
+        i, k = self.film.pairs
+        pull = np.einsum("pc,pc->p", self._along(blocks), moved[k])
+        return summed(i, pull, self.film.n_v)[self.film.interior]
+
+    def _along(self, blocks: FloatArray) -> FloatArray:
+        """Return n_i . H_ik (m, 3)."""
+        along: FloatArray = np.einsum(
+            "pc,pcd->pd", self.normals[self.film.pairs[0]], blocks
+        )
+        return along
+
+    @cached_property
+    def _chosen(self) -> tuple[IntArray, IntArray, IntArray]:
+        """Which pairs couple heights, a height and the loop, the loop and the loop."""
+        i, k = self.film.pairs
+        inside = is_inside(self.film)
+        follows = self.weight > 0
+        return (
+            np.flatnonzero(inside[i] & inside[k]),
+            np.flatnonzero(inside[i] & follows[k]),
+            np.flatnonzero(follows[i] & follows[k]),
+        )
+
+    @cached_property
+    def _inside(self) -> Elimination:
+        heights, number = self._chosen[0], numbers(self.film)
+        i, k = self.film.pairs
+        none = np.zeros(0, dtype=np.int64)
+        return plan(number[i[heights]], number[k[heights]], self.film.pieces, none)
+
+    @cached_property
+    def _elimination(self) -> Elimination:
+        film, number, (heights, coupling, loop) = (
+            self.film,
+            numbers(self.film),
+            self._chosen,
+        )
+        i, k = film.pairs
+        n_i = len(film.interior)
+        on_loop = n_i + 3 * self.leader[:, None] + AXES
+        kept_row = np.repeat(on_loop[i[loop]], 3, axis=1)
+        kept_column = np.tile(on_loop[k[loop]], 3)
+        row = [number[i[heights]], np.repeat(number[i[coupling]], 3), kept_row.ravel()]
+        column = [number[k[heights]], on_loop[k[coupling]].ravel(), kept_column.ravel()]
+        kept = np.arange(n_i, n_i + 3 * len(film.loop))
+        return plan(np.concatenate(row), np.concatenate(column), film.pieces, kept)
+
+
+def along_normals(film: AreaFilm, x: FloatArray, normals: FloatArray) -> AlongNormals:
+    """Return the variations of a shape x (n_v, 3) with normals inside (n_i, 3)."""
+    from scipy.spatial import cKDTree  # slow to load, and only soap films need it
+
+    loop, inside = film.loop, film.interior
+    distance, nearest = cKDTree(x[loop]).query(x[inside])
+    directions, weight = np.zeros((film.n_v, 3)), np.ones(film.n_v)
+    directions[inside] = normals
+    leader = np.zeros(film.n_v, dtype=np.int64)
+    leader[loop], leader[inside] = np.arange(len(loop)), nearest
+    weight[inside] = np.square(np.maximum(1 - distance / _WIDTH, 0.0))
+    return AlongNormals(film, directions, leader, weight)
+
+
+def is_inside(film: AreaFilm) -> IntArray:
+    """Return whether each vertex (n_v,) is inside."""
+    found = np.zeros(film.n_v, dtype=bool)
+    found[film.interior] = True
+    return found
+
+
+def numbers(film: AreaFilm) -> IntArray:
+    """Return the place of each vertex (n_v,) among those inside, then those of the loop."""
+    number = np.empty(film.n_v, dtype=np.int64)
+    number[np.concatenate([film.interior, film.loop])] = np.arange(film.n_v)
+    return number

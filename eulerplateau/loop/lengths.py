@@ -1,0 +1,168 @@
+"""Bringing a loop back to its rest lengths: the constraint's Jacobian and projection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.loop import Loop
+
+# Gauss-Newton converges quadratically: a handful of steps from a nearby shape.
+_PROJECTION_STEPS = 30
+# Above this ratio of the longest to the shortest edge, edges are turned one by one.
+_UNEVEN = 5.0
+# The gap, in units of L, at which a loop is closed; and how short u + g may become.
+_CLOSED = 1e-15
+_OPPOSITE = 1e-6
+# Rescaling converges linearly, but from anywhere that is not a point.
+_RESCALING_STEPS = 200
+
+
+def jacobian(loop: Loop, x_loop: FloatArray) -> FloatArray:
+    """Return J (n_b, d n_b): row v holds -e_v / s_v at vertex v and +e_v / s_v at v + 1.
+
+    For loops (n_b, d), d = 3, or 2 in a plane.
+    """
+    n, d = x_loop.shape
+    direction = loop.chords(x_loop) / loop.rest_lengths[:, None]
+    rows = np.zeros((n, n, d))
+    v = np.arange(n)
+    rows[v, v] = -direction
+    rows[v, (v + 1) % n] = direction
+    return rows.reshape(n, d * n)
+
+
+@dataclass(frozen=True)
+class LengthMetric:
+    """J M^-1 J^T (n_b, n_b), M = diag(<s>): how forces along the edges change lengths.
+
+    Each edge meets only its two neighbours, so the matrix is tridiagonal but for one
+    entry in the corner, which a rank-one term w w^T takes out, leaving what remains
+    positive semidefinite.
+    """
+
+    _factor: FloatArray
+    _corner: FloatArray
+    _solved_corner: FloatArray
+
+    def solve(self, rhs: FloatArray) -> FloatArray:
+        """Return (J M^-1 J^T)^-1 rhs, for rhs (n_b,) or (n_b, m)."""
+        open_chain = cho_solve_banded((self._factor, False), rhs, check_finite=False)
+        share = self._corner @ open_chain / (1 + self._corner @ self._solved_corner)
+        solution: FloatArray = open_chain - np.multiply.outer(self._solved_corner, share)
+        return solution
+
+
+def length_metric(loop: Loop, x_loop: FloatArray) -> LengthMetric:
+    """Factorise J M^-1 J^T at a loop (n_b, 3); LinAlgError if an edge has no length."""
+    ease = 1 / loop.mean_lengths
+    direction = loop.chords(x_loop) / loop.rest_lengths[:, None]
+    stretch = np.linalg.norm(direction, axis=1)
+    if not stretch.all():
+        raise LinAlgError("an edge of the loop has no length")
+    banded = np.empty((2, len(ease)))
+    banded[1] = stretch**2 * (ease + np.roll(ease, -1))
+    banded[0, 1:] = -ease[1:] * (direction[:-1] * direction[1:]).sum(axis=1)
+    bend = -ease[0] * float(direction[-1] @ direction[0])
+    ratio = np.sqrt(stretch[0] / stretch[-1])
+    corner = np.zeros(len(ease))
+    corner[[0, -1]] = np.sqrt(abs(bend)) * np.array([ratio, np.copysign(1 / ratio, bend)])
+    banded[1, [0, -1]] -= corner[[0, -1]] ** 2
+    factor = cholesky_banded(banded, check_finite=False)
+    solved = cho_solve_banded((factor, False), corner, check_finite=False)
+    return LengthMetric(factor, corner, solved)
+
+
+def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+    """Return the nearest loop (n_b, 3) that keeps its lengths, to rounding; None if lost.
+
+    Gauss-Newton in the norm sum_v <s_v> |dx_v|^2. Next to a much longer edge, what corrects
+    that one's length would throw a short one about: loops of very uneven edges keep each
+    edge's direction instead, as well as they can and still close.
+    """
+    if loop.rest_lengths.max() > _UNEVEN * loop.rest_lengths.min():
+        return _turn_edges(loop, x_loop)
+    mass = loop.mean_lengths[:, None]
+    # What rounding of the positions leaves of a short edge's length.
+    eps = float(np.finfo(np.float64).eps)
+    rounding = 4 * eps * float(np.abs(x_loop).max() / loop.rest_lengths.min())
+    small = max(1e-12, rounding)
+    x, error = x_loop, np.inf
+    for _ in range(_PROJECTION_STEPS):
+        excess = loop.constraint(x)
+        previous, error = error, float(np.abs(excess / loop.rest_lengths).max())
+        if not np.isfinite(error) or error > 1e3:
+            return None
+        # Quadratic convergence ends where rounding begins: then error stops falling.
+        if error < 1e-15 or (error < small and error >= 0.25 * previous):
+            return x
+        try:
+            pull = length_metric(loop, x).solve(excess)
+        except LinAlgError:
+            return None
+        x = x - loop.tension_force(x, pull) / mass
+    return x if error < small else None
+
+
+def _turn_edges(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+    """Return the loop whose edges s_v (u_v + g) / |u_v + g| close; None if lost.
+
+    u_v are the given edges' unit vectors. The vector g that closes the loop is where the
+    convex function sum_v s_v |u_v + g| is least; found by Newton's method.
+    """
+    s, chords = loop.rest_lengths, loop.chords(x_loop)
+    lengths = np.linalg.norm(chords, axis=1)
+    if not (np.isfinite(lengths).all() and lengths.all()):
+        return None
+    if float(np.abs(lengths / s - 1).max()) < _CLOSED:
+        return x_loop
+    given = chords / lengths[:, None]
+    shift, gap = np.zeros(chords.shape[1]), np.inf
+    for _ in range(_PROJECTION_STEPS):
+        turned = given + shift
+        size = np.linalg.norm(turned, axis=1)
+        if size.min() < _OPPOSITE:
+            return None
+        turned /= size[:, None]
+        closure = s @ turned
+        gap, before = float(np.abs(closure).max()), gap
+        if gap < _CLOSED or (gap < 10 * _CLOSED and gap >= 0.25 * before):
+            edges = s[:, None] * turned
+            x = np.concatenate([np.zeros_like(edges[:1]), np.cumsum(edges, axis=0)[:-1]])
+            x += loop.mean_lengths @ (x_loop - x) / loop.mean_lengths.sum()
+            return x
+        pull = s / size
+        across = pull.sum() * np.eye(len(shift)) - (pull[:, None] * turned).T @ turned
+        try:
+            shift = shift - np.linalg.solve(across, closure)
+        except np.linalg.LinAlgError:
+            return None
+    return None
+
+
+def close_with_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+    """Return a loop that keeps its lengths, from any start, however wrong its lengths.
+
+    Alternates between giving each edge its length and spreading what the loop then fails
+    to close by; ends with `project_lengths`.
+    """
+    s = loop.rest_lengths
+    if loop.length_error(x_loop) < 0.1:
+        near = project_lengths(loop, x_loop)
+        if near is not None:
+            return near
+    x = x_loop
+    for _ in range(_RESCALING_STEPS):
+        chords = loop.chords(x)
+        lengths = np.linalg.norm(chords, axis=1)
+        if not lengths.all():
+            return None
+        edges = chords * (s / lengths)[:, None]
+        edges -= np.outer(s, edges.sum(axis=0)) / s.sum()
+        x = x[0] + np.concatenate([np.zeros_like(edges[:1]), np.cumsum(edges, axis=0)[:-1]])
+        if loop.length_error(x) < 1e-3:
+            break
+    return project_lengths(loop, x - x.mean(axis=0) + x_loop.mean(axis=0))

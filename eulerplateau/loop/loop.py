@@ -1,0 +1,107 @@
+"""The elastic loop: bending stiffness and inextensibility, edge by edge."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop import kernels
+
+# Edges in which a resolved loop can turn back on itself.
+_TURNING_BACK = 6
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A closed chain of edges that keep their rest lengths s_v (n_b,), in units of L."""
+
+    rest_lengths: FloatArray
+
+    @cached_property
+    def mean_lengths(self) -> FloatArray:
+        """<s_v> = (s_v + s_{v-1}) / 2 (n_b,), the length that belongs to vertex v."""
+        return 0.5 * (self.rest_lengths + np.roll(self.rest_lengths, 1))
+
+    @cached_property
+    def bending_matrix(self) -> FloatArray:
+        """B (n_b, n_b) with sum_v <s_v> kappa_v^2 = tr(x^T B x) (alpha = 1)."""
+        unit = np.eye(len(self.rest_lengths))
+        tangent = (np.roll(unit, -1, axis=0) - unit) / self.rest_lengths[:, None]
+        turn = tangent - np.roll(tangent, 1, axis=0)
+        stiffness: FloatArray = turn.T @ (turn / self.mean_lengths[:, None])
+        return stiffness
+
+    def chords(self, x_loop: FloatArray) -> FloatArray:
+        """Return e_v = x_{v+1} - x_v (n_b, 3) of loop positions (n_b, 3)."""
+        return differences(x_loop)
+
+    def constraint(self, x_loop: FloatArray) -> FloatArray:
+        """Return c_v = (|e_v|^2 - s_v^2) / (2 s_v) (n_b,); zero where lengths are kept.
+
+        Formed as (|e| - s)(|e| + s) / (2 s): the difference of squares would lose half
+        of the digits that are left near zero.
+        """
+        lengths = np.linalg.norm(self.chords(x_loop), axis=1)
+        s = self.rest_lengths
+        excess: FloatArray = (lengths - s) * (lengths + s) / (2 * s)
+        return excess
+
+    def length_error(self, x_loop: FloatArray) -> float:
+        """Return max |l_v / s_v - 1|."""
+        lengths = np.linalg.norm(self.chords(x_loop), axis=1)
+        return float(np.abs(lengths / self.rest_lengths - 1).max())
+
+    def largest_turning(self, x_loop: FloatArray) -> float:
+        """Return the largest angle between consecutive edges, degrees, in [0, 180]."""
+        after = self.chords(x_loop)
+        before = np.roll(after, 1, axis=0)
+        sine = np.linalg.norm(np.cross(before, after), axis=1)
+        cosine = (before * after).sum(axis=1)
+        return float(np.degrees(np.arctan2(sine, cosine).max()))
+
+    def strands_meet(self, x_loop: FloatArray) -> bool:
+        """Whether two stretches of the loop have come as close as neighbours are.
+
+        Where it turns by no more than 30 degrees at a vertex, a loop takes six edges to
+        turn back, four edges away from itself.
+        """
+        n = len(x_loop)
+        if n < 4 * _TURNING_BACK:
+            return False
+        x = np.ascontiguousarray(x_loop)
+        return kernels.strands_within(x, float(self.rest_lengths.max()), _TURNING_BACK)
+
+    def bending_force(self, x_loop: FloatArray) -> FloatArray:
+        """Return the gradient (n_b, 3) of sum_v <s_v> kappa_v^2, i.e. 2 B x.
+
+        By differences of neighbours: the product 2 B x would be lost in rounding, whose
+        share is eps / h^3 for edges of length h.
+        """
+        s = self.rest_lengths[:, None]
+        tangent = self.chords(x_loop) / s
+        curvature = backward_differences(tangent) / self.mean_lengths[:, None]
+        return backward_differences(differences(curvature) * (2 / s))
+
+    def tension_force(self, x_loop: FloatArray, multipliers: FloatArray) -> FloatArray:
+        """Return J^T lambda (n_b, 3), the gradient of sum_v lambda_v c_v."""
+        pull = (multipliers / self.rest_lengths)[:, None] * self.chords(x_loop)
+        return -backward_differences(pull)
+
+
+def differences(rows: FloatArray) -> FloatArray:
+    """Return D rows: row v + 1 minus row v, cyclic (np.roll costs more than the work)."""
+    result = np.empty_like(rows)
+    np.subtract(rows[1:], rows[:-1], out=result[:-1])
+    np.subtract(rows[0], rows[-1], out=result[-1])
+    return result
+
+
+def backward_differences(rows: FloatArray) -> FloatArray:
+    """Return -D^T rows: row v minus row v - 1, cyclic."""
+    result = np.empty_like(rows)
+    np.subtract(rows[1:], rows[:-1], out=result[1:])
+    np.subtract(rows[0], rows[-1], out=result[0])
+    return result

@@ -1,0 +1,82 @@
+"""Motions that cost nothing: rigid ones, and a uniform loop's sliding along itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.lengths import length_metric
+from eulerplateau.loop.loop import Loop, backward_differences, differences
+from eulerplateau.loop.slide_kernels import SLIDES
+
+RIGID_MOTIONS = 6
+
+# Row k is the matrix G_k with axis_k x r = r G_k.
+TURNS = np.array(
+    [
+        [[0, 0, 0], [0, 0, 1], [0, -1, 0]],
+        [[0, 0, -1], [0, 0, 0], [1, 0, 0]],
+        [[0, 1, 0], [-1, 0, 0], [0, 0, 0]],
+    ],
+    dtype=np.float64,
+)
+
+
+def rigid_motions(x: FloatArray) -> FloatArray:
+    """Return the translations and rotations of x (n, 3) as columns (3 n, 6).
+
+    Of a plane loop (n, 2) the three in its plane (2 n, 3).
+    """
+    centred = x - x.mean(axis=0)
+    if x.shape[1] == 2:
+        turned = np.stack([-centred[:, 1], centred[:, 0]], axis=1)
+        return np.column_stack([np.tile(np.eye(2), (len(x), 1)), turned.ravel()])
+    motions = np.empty((len(x), 3, RIGID_MOTIONS))
+    motions[:, :, :3] = np.eye(3)
+    motions[:, :, 3:] = (centred @ TURNS).transpose(1, 2, 0)
+    return motions.reshape(-1, RIGID_MOTIONS)
+
+
+def sliding(loop: Loop, x: FloatArray) -> FloatArray | None:
+    """Return the loop's sliding along itself (n, d), of unit size; None if it is rigid.
+
+    A soap film does not know which piece of a uniform loop lies where: a loop that slides
+    along its own curve changes nothing but how the vertices lie on it, which is to say the
+    discretisation. That displacement is the tangent, made to keep all lengths (J p = 0) and
+    orthogonal to rigid motions, both in the norm sum_v <s_v> |p_v|^2. Raises LinAlgError
+    if an edge has no length.
+    """
+    mass = loop.mean_lengths[:, None]
+    metric = length_metric(loop, x)
+    along = x - np.roll(x, 1, axis=0)
+    along = along / np.linalg.norm(along, axis=1)[:, None]
+    tangent = along + np.roll(along, -1, axis=0)
+    direction = differences(x) / loop.rest_lengths[:, None]
+    stretch = (direction * differences(tangent)).sum(axis=1)
+    pull = metric.solve(stretch)
+    slide = tangent + backward_differences(pull[:, None] * direction) / mass
+    root = np.repeat(np.sqrt(loop.mean_lengths), x.shape[1])
+    rigid = np.linalg.qr(rigid_motions(x) * root[:, None])[0]
+    weighted = slide.ravel() * root
+    whole = float(np.linalg.norm(weighted))
+    weighted = weighted - rigid @ (rigid.T @ weighted)
+    size = float(np.linalg.norm(weighted))
+    if size < SLIDES * whole:
+        return None
+    found: FloatArray = (weighted / (size * root)).reshape(x.shape)
+    return found
+
+
+def free_motions(loop: Loop, x: FloatArray, slides: bool) -> FloatArray:
+    """Return rigid motions, and sliding if it costs nothing either, as columns (d n, m)."""
+    rigid = rigid_motions(x)
+    slide = sliding(loop, x) if slides else None
+    return rigid if slide is None else np.column_stack([rigid, slide.ravel()])
+
+
+def without(slide: FloatArray | None, loop: Loop, forces: FloatArray) -> FloatArray:
+    """Return forces (n, d) on a loop without what would slide it along itself."""
+    if slide is None:
+        return forces
+    share = float(np.sum(slide * forces))
+    return forces - share * loop.mean_lengths[:, None] * slide

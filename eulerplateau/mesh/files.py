@@ -1,0 +1,129 @@
+"""Mesh files, made here or elsewhere, and their one way into a `DiskMesh`."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.errors import MeshError, OutputError, SpecError
+from eulerplateau.mesh import formats
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.generation import generate
+from eulerplateau.mesh.spec import MeshSpec
+from eulerplateau.settings import load_toml
+
+_FORMATS = {
+    ".vtp": (formats.read_vtp, formats.write_vtp),
+    ".msh": (formats.read_meshio, formats.write_meshio),
+    ".vtu": (formats.read_meshio, formats.write_meshio),
+    ".vtk": (formats.read_meshio, formats.write_meshio),
+    ".off": (formats.read_meshio, formats.write_meshio),
+    ".ply": (formats.read_meshio, formats.write_meshio),
+    ".stl": (formats.read_trimesh, formats.write_trimesh),
+    ".glb": (formats.read_trimesh, formats.write_trimesh),
+    ".obj": (formats.read_obj, formats.write_obj),
+}
+
+
+def load_mesh(path: str | Path) -> DiskMesh:
+    """Return the mesh that `path` describes (.toml) or holds (any other extension).
+
+    Raises what `generate` and `read_mesh` raise.
+    """
+    if Path(path).suffix.lower() == ".toml":
+        return generate(load_toml(path, MeshSpec))
+    return read_mesh(path)
+
+
+def read_mesh(path: str | Path) -> DiskMesh:
+    """Read a triangulated disk from a .vtp .msh .vtu .vtk .off .ply .stl .obj .glb file.
+
+    Points and lines in the file, and vertices that no triangle uses, are left out. The
+    last three formats store a position more than once where triangles meet; positions
+    equal to the last bit are merged.
+
+    Raises SpecError if there is no such file, OutputError if it cannot be read, and
+    MeshError if it holds anything else than a disk; the vertices that MeshError names are
+    numbered as in the file (after merging).
+    """
+    points, triangles = read_triangles(path)
+    if not len(triangles):
+        raise MeshError("mesh", None, f"{path} holds no triangles")
+    outside = ((triangles < 0) | (triangles >= len(points))).any(axis=1)
+    if outside.any():
+        first = int(np.flatnonzero(outside)[0])
+        problem = f"uses a vertex outside 0 ... {len(points) - 1} (in {path})"
+        raise MeshError("triangle", first, problem)
+    used, renumbered = np.unique(triangles, return_inverse=True)
+    try:
+        return DiskMesh.from_triangles(points[used], renumbered.reshape(-1, 3))
+    except MeshError as error:
+        raise _named_as_in_file(error, used, path) from None
+
+
+def read_triangles(path: str | Path) -> tuple[FloatArray, IntArray]:
+    """Return points (n, 3) and triangles (n_t, 3) as the file has them, unchecked."""
+    path = Path(path)
+    try:
+        with path.open("rb") as file:
+            empty = not file.read(1)
+    except FileNotFoundError:
+        raise SpecError(str(path), "there is no such file") from None
+    except OSError as error:
+        raise OutputError(path, f"cannot be read: {error.strerror}") from None
+    if empty:
+        raise MeshError("mesh", None, f"{path} is empty")
+    read, _ = _format(path)
+    try:
+        points, triangles = read(path)
+        return points.astype(np.float64), triangles.astype(np.int64).reshape(-1, 3)
+    except MeshError:
+        raise
+    # The readers raise whatever comes up in a broken file, and meshio even exits.
+    except (Exception, SystemExit) as error:
+        problem = f"{path} is not a whole {path.suffix} file of a triangulated surface"
+        raise MeshError("mesh", None, problem) from error
+
+
+def write_mesh(mesh: DiskMesh, path: str | Path) -> None:
+    """Write `mesh` at its physical size, `mesh.x * mesh.length`; whole or not at all.
+
+    .vtp .msh .vtu .vtk .off .ply .obj keep every bit, .stl and .glb single precision.
+    Raises MeshError for another extension, OutputError if the file cannot be written.
+    """
+    path = Path(path)
+    _, write = _format(path)
+    temporary = path.with_name(f".{os.getpid()}.{path.name}")
+    try:
+        try:
+            write(temporary, mesh.x * mesh.length, mesh.triangles)
+            # VTK leaves an empty file on a full disk, without an error.
+            if not temporary.is_file() or temporary.stat().st_size == 0:
+                raise OutputError(path, "cannot be written: is the disk full?")
+            os.replace(temporary, path)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except OSError as error:
+        raise OutputError(path, f"cannot be written: {error.strerror}") from None
+
+
+def _format(path: Path) -> tuple[formats.Reader, formats.Writer]:
+    try:
+        return _FORMATS[path.suffix.lower()]
+    except KeyError:
+        known = " ".join(_FORMATS)
+        problem = f"{path} has an unknown extension; known are {known} (and .toml specs)"
+        raise MeshError("mesh", None, problem) from None
+
+
+def _named_as_in_file(error: MeshError, used: IntArray, path: str | Path) -> MeshError:
+    index = error.index
+    if error.kind == "vertex" and isinstance(index, int):
+        index = int(used[index])
+    elif isinstance(index, tuple):
+        index = (int(used[index[0]]), int(used[index[1]]))
+    problem = str(error).partition(": ")[2]
+    return MeshError(error.kind, index, f"{problem} (in {path})")

@@ -1,0 +1,99 @@
+"""The numbers a sweep records about a shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop import Loop
+from eulerplateau.mesh.crossings import self_intersections
+from eulerplateau.mesh.curvature import (
+    loop_frame,
+    total_gauss_curvature,
+)
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.triangles import (
+    area_vectors,
+    smallest_angle,
+)
+from eulerplateau.mesh.waist import WaistPath, waist_twist
+
+
+@dataclass(frozen=True)
+class Measures:
+    """What is measured on a shape; the fields are columns of sweep.csv. Angles in degrees.
+
+    Attributes
+    ----------
+    abs_kappa_n : float
+        Contour integral of |kappa_n|; the mean of |kappa_n| times L.
+    total_gauss_curvature : float
+        Integral of K dA, the sum of the interior angle defects (radians, as 2 pi is).
+    area : float
+        Area of the triangles, in units of L^2.
+    max_turning : float
+        Largest angle between consecutive edges of the loop, degrees.
+    waist_twist : float
+        See `waist_twist`; degrees.
+    self_intersections : int
+        See `intersections.self_intersections`.
+    aspect : float
+        See `aspect`.
+    min_angle : float
+        The smallest angle of the film's triangles, degrees.
+    """
+
+    abs_kappa_n: float
+    total_gauss_curvature: float
+    area: float
+    max_turning: float
+    waist_twist: float
+    self_intersections: int
+    aspect: float
+    min_angle: float
+
+
+def measure(mesh: DiskMesh, x: FloatArray, path: WaistPath | None) -> Measures:
+    """Measure the shape `x` (n_v, 3), in units of L.
+
+    `path` is `waist_path(mesh)`, found once for a mesh. Raises MeshError of kind "vertex"
+    if a coordinate is not finite.
+    """
+    crossings = self_intersections(x, mesh.triangles)
+    frame = loop_frame(mesh, x)
+    corner = x[mesh.triangles]
+    areas = np.linalg.norm(area_vectors(mesh.triangles, x), axis=1)
+    return Measures(
+        abs_kappa_n=float(np.abs(frame.kappa_n) @ frame.mean_lengths),
+        total_gauss_curvature=total_gauss_curvature(mesh, x),
+        area=float(areas.sum()),
+        max_turning=Loop(mesh.rest_lengths).largest_turning(x[mesh.loop]),
+        waist_twist=waist_twist(path, x),
+        self_intersections=crossings,
+        aspect=aspect(mesh, x),
+        min_angle=smallest_angle(corner - np.roll(corner, 1, axis=1), areas),
+    )
+
+
+def aspect(mesh: DiskMesh, x: FloatArray) -> float:
+    """Return the short over the long axis, in [0, 1], of the ellipse the film resembles.
+
+    That is the square root of the ratio of the two largest second moments of the film's
+    area about its centroid. It is b/a for an ellipse and for every polygon that is the
+    affine image of a regular one, however its boundary is sampled, and 1 for a regular
+    polygon, whose extents would depend on the choice among equivalent axes; NaN for a
+    film without area.
+    """
+    corner = x[mesh.triangles]
+    areas = np.linalg.norm(area_vectors(mesh.triangles, x), axis=1)
+    if areas.sum() == 0.0:
+        return float("nan")
+    centre = areas @ corner.mean(axis=1) / areas.sum()
+    corner = corner - centre
+    # A quadratic form integrates over a triangle exactly by the midpoints of its edges.
+    middle = 0.5 * (corner + np.roll(corner, -1, axis=1))
+    moments = np.einsum("t,tki,tkj->ij", areas, middle, middle, optimize=True)
+    _, middling, largest = np.linalg.eigvalsh(moments)
+    return float(np.sqrt(max(middling, 0.0) / largest))

@@ -1,1 +1,0 @@
-"""What a run leaves on disk: the table of rows, the shapes, the run folder."""

@@ -1,0 +1,103 @@
+"""The gallery as one HTML file: data, style, scripts and libraries, all inside it."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import math
+import re
+from dataclasses import asdict
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eulerplateau.pictures.gallery.alignment import EYE
+from eulerplateau.pictures.gallery.collection import Gallery, Mesh, Run
+from eulerplateau.runs import COLUMNS
+
+# Beyond what is drawn, and at most 1e-5 L away from it: 16 bits for a loop of length 1.
+_INT16 = 32767
+_DIGITS = 10
+_SCRIPTS = ("quantities", "data", "film", "diagram", "main")
+
+
+def page(gallery: Gallery) -> bytes:
+    """Return the page, UTF-8; with 474 vertices a shape takes 4 kB and the rest 0.8 MB.
+
+    Positions are rounded to 16 bits: by less than 1e-5 L. The page's content policy
+    forbids the browser to load anything from anywhere.
+    """
+    title = ", ".join(run.name for run in gallery.runs)
+    parts = {
+        "title": html.escape(title),
+        "licences": _part("vendor/LICENSES.txt"),
+        "style": _part("style.css"),
+        "libraries": _part("vendor/libraries.min.js"),
+        # "<" could end the script it stands in; in JSON it occurs inside texts only.
+        "data": json.dumps(_data(gallery), allow_nan=False).replace("<", "\\u003c"),
+        "scripts": "".join(_part(f"{name}.js") for name in _SCRIPTS),
+    }
+    template = _part("page.html")
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template).encode()
+
+
+def _part(name: str) -> str:
+    return files("eulerplateau.pictures.gallery").joinpath(name).read_text(encoding="utf-8")
+
+
+def _data(gallery: Gallery) -> dict[str, Any]:
+    size = max(float(np.abs(run.shapes).max()) for run in gallery.runs)
+    # Across and up the first view, in which z points up.
+    across = np.cross([0.0, 0.0, 1.0], EYE)
+    screen = np.stack([across, np.cross(EYE, across)], axis=1)
+    screen /= np.linalg.norm(screen, axis=0)
+    seen = [np.abs(run.shapes @ screen).max(axis=(0, 1)) for run in gallery.runs]
+    unit = size / _INT16 or 1.0
+    return {
+        "columns": [*COLUMNS, "special"],
+        "load": gallery.runs[0].rows[0].quantity,
+        "unit": unit,
+        "eye": EYE.tolist(),
+        "halfSize": np.max(seen, axis=0).tolist(),
+        "meshes": [_mesh(mesh) for mesh in gallery.meshes],
+        "runs": [_run(run, unit) for run in gallery.runs],
+    }
+
+
+def _mesh(mesh: Mesh) -> dict[str, Any]:
+    return {
+        "vertices": mesh.n_v,
+        "triangles": _base64(mesh.triangles.astype("<u4")),
+        "loop": _base64(mesh.loop.astype("<u4")),
+    }
+
+
+def _run(run: Run, unit: float) -> dict[str, Any]:
+    return {
+        "name": run.name,
+        "mesh": run.mesh,
+        "tilings": [
+            [first, _base64(tiles.astype("<u4"))] for first, tiles in run.tilings[1:]
+        ],
+        "shapes": _base64(np.rint(run.shapes / unit).astype("<i2")),
+        "series": [asdict(series) for series in run.series],
+        "special": run.special,
+        "rows": [
+            [_value(getattr(row, name, None)) for name in (*COLUMNS, "special")]
+            for row in run.rows
+        ],
+    }
+
+
+def _value(value: Any) -> Any:
+    """Return a cell as JSON has it: null for what is not computed or not finite."""
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
+    return getattr(value, "value", value)
+
+
+def _base64(array: NDArray[Any]) -> str:
+    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")

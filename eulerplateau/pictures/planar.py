@@ -1,0 +1,162 @@
+"""Figures of exact planar films; `python -m eulerplateau.planar_plots DIR` draws them."""
+
+from __future__ import annotations
+
+import sys
+from math import pi, sqrt
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eulerplateau.exact.planar import (
+    PlanarFilm,
+    Regime,
+    Thresholds,
+    planar_film,
+    thresholds,
+)
+from eulerplateau.pictures.child import draw_in_child
+from eulerplateau.pictures.figure import BLACK, BLUE, VERMILION, frame, save
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+GALLERY, ENERGY = "planar-gallery.png", "planar-energy.png"
+
+_SECONDS = 120.0
+_LOAD = r"$\hat\sigma=\sigma L^3/\alpha$"
+# Half the length of the longest film, and a margin.
+_HALF_WIDTH = 0.26
+_FILM, _ROD = "#CFE3F2", BLACK
+_COLUMNS = (
+    "near threshold",
+    "buckled",
+    "first contact",
+    "line contact begins",
+    "line contact",
+)
+# The loads of columns one and two, as a part of the way to the first contact, and of the
+# last column, over the onset of line contact.
+_EARLY, _MIDDLE, _LATE = 0.05, 0.4, 5.0
+_COLOURS = {2: BLUE, 3: VERMILION}
+_STYLES: dict[Regime, Any] = {
+    Regime.BUCKLED: "-",
+    Regime.POINT_CONTACT: (0, (5, 1.5)),
+    Regime.LINE_CONTACT: (0, (1.2, 1.2)),
+}
+
+
+def draw_figures(folder: Path) -> bool:
+    """Draw both figures to `folder` in a child process; return whether that worked."""
+    return draw_in_child("eulerplateau.pictures.planar", str(folder), timeout=_SECONDS)
+
+
+def plot_gallery(path: Path) -> None:
+    """Draw the films with 2 ... 5 lobes at five loads (paper, fig. gallery), at one scale.
+
+    Raises OutputError if the PNG file `path` cannot be written.
+    """
+    from matplotlib.figure import Figure
+
+    heights = {2: 0.13, 3: 0.185, 4: 0.185, 5: 0.185}
+    figure = Figure(figsize=(9.6, 6.4), layout="constrained")
+    axes = figure.subplots(
+        len(heights), len(_COLUMNS), height_ratios=list(heights.values())
+    )
+    for row, (n, height) in zip(axes, heights.items(), strict=True):
+        for ax, load in zip(row, _gallery_loads(thresholds(n)), strict=True):
+            _draw_film(ax, planar_film(n, load), (_HALF_WIDTH, height))
+            _write(ax, (0.5, -0.14), rf"$\hat\sigma={_readable(load)}$", 9)
+        _write(row[0], (-0.1, 0.5), rf"$n={n}$", 12)
+    for ax, name in zip(axes[0], _COLUMNS, strict=True):
+        _write(ax, (0.5, 1.2), name, 11)
+    save(figure, path)
+
+
+def plot_energy(path: Path) -> None:
+    """Draw the energy of two- and three-lobed films over the load (paper, fig. energy).
+
+    Raises OutputError if the PNG file `path` cannot be written.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.4, 5.4), layout="constrained")
+    ax = figure.subplots()
+    low, high = 500.0, 1.5e5
+    loads = np.geomspace(low, high, 200)
+    ax.plot(loads, loads / (4 * pi) + 4 * pi**2, "--", color="0.5", label="disk")
+    for n, colour in _COLOURS.items():
+        _draw_energies(ax, thresholds(n), high, colour)
+    ax.set(xscale="log", yscale="log", xlim=(low, high), ylim=(60, 1.3e4))
+    ax.set_xlabel(_LOAD)
+    ax.set_ylabel(r"$E\,/\,(\alpha/L)$")
+    frame(ax)
+    ax.legend(loc="upper left", frameon=False, fontsize=9)
+    save(figure, path)
+
+
+def _gallery_loads(limits: Thresholds) -> tuple[float, ...]:
+    start, contact = limits.sigma_buckling, limits.sigma_contact
+    free = [start + part * (contact - start) for part in (_EARLY, _MIDDLE)]
+    line = limits.sigma_line_contact
+    return (*free, contact, line, _LATE * line)
+
+
+def _readable(load: float) -> str:
+    return f"{load:,.0f}".replace(",", r"\,")
+
+
+def _write(ax: Axes, place: tuple[float, float], text: str, size: float) -> None:
+    ax.annotate(
+        text, place, xycoords="axes fraction", ha="center", va="center", fontsize=size
+    )
+
+
+def _draw_film(
+    ax: Axes, film: PlanarFilm, room: tuple[float, float], width: float = 1.3
+) -> None:
+    """Draw the film in a rectangle of half sides `room`; a tip points up if n > 2."""
+    x = film.positions(np.linspace(0, 1, 1 + 240 * film.n))
+    x = np.stack([-x[:, 1], x[:, 0]], -1) if film.n > 2 else x
+    ax.fill(*x.T, color=_FILM, linewidth=0)
+    ax.plot(*x.T, color=_ROD, linewidth=width, solid_joinstyle="round")
+    ax.set(xlim=(-room[0], room[0]), ylim=(-room[1], room[1]), aspect="equal")
+    ax.set_axis_off()
+
+
+def _draw_energies(ax: Axes, limits: Thresholds, high: float, colour: str) -> None:
+    corners = {
+        Regime.BUCKLED: (limits.sigma_buckling, limits.sigma_contact),
+        Regime.POINT_CONTACT: (limits.sigma_contact, limits.sigma_line_contact),
+        Regime.LINE_CONTACT: (limits.sigma_line_contact, high),
+    }
+    for regime, (start, end) in corners.items():
+        loads = np.geomspace(start, end, 60)
+        energies = [planar_film(limits.n, load).energy for load in loads]
+        label = f"n = {limits.n}, {regime.value.replace('-', ' ')}"
+        ax.plot(loads, energies, color=colour, linestyle=_STYLES[regime], label=label)
+        ax.plot(start, energies[0], "o", color=colour, markersize=4)
+        _draw_inset(ax, planar_film(limits.n, sqrt(start * end)), colour)
+
+
+def _draw_inset(ax: Axes, film: PlanarFilm, colour: str) -> None:
+    """Mark the film on its curve and draw its shape: below for n = 2, above for n = 3."""
+    ax.plot(film.sigma_hat, film.energy, "o", color=colour, markersize=5, fillstyle="none")
+    # Further off where the disk's line is close.
+    distance = 2.0 if film.regime is Regime.BUCKLED else 1.55
+    height = film.energy * (distance if film.n > 2 else 1 / distance)
+    # Half an inset's width and height, as factors on the logarithmic axes.
+    wide, high = 1.45, 1.6
+    left, below = film.sigma_hat / wide, height / high
+    inset = ax.inset_axes(
+        (left, below, film.sigma_hat * wide - left, height * high - below),
+        transform=ax.transData,
+    )
+    _draw_film(inset, film, (_HALF_WIDTH, _HALF_WIDTH), 0.9)
+
+
+if __name__ == "__main__":
+    _folder = Path(sys.argv[1])
+    plot_gallery(_folder / GALLERY)
+    plot_energy(_folder / ENERGY)

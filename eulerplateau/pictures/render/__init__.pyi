@@ -1,0 +1,11 @@
+from .alignment import aligned as aligned
+from .choice import chosen_steps as chosen_steps
+from .colours import SIDES as SIDES, SOAP as SOAP
+from .drawing import (
+    STILLS as STILLS,
+    SWEEP as SWEEP,
+    TURN as TURN,
+    draw_shapes as draw_shapes,
+)
+from .fields import read_field as read_field
+from .pictures import RunPictures as RunPictures

@@ -1,0 +1,18 @@
+"""`python -m eulerplateau.render DIR KIND COLOUR STEP...`: what `draw_shapes` starts."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from eulerplateau.pictures.render import STILLS, TURN, RunPictures
+
+if __name__ == "__main__":
+    folder, kind, colour, *steps = sys.argv[1:]
+    pictures = RunPictures.read(Path(folder), [int(step) for step in steps], colour)
+    if kind == STILLS:
+        pictures.stills()
+    elif kind == TURN:
+        pictures.turns()
+    else:
+        pictures.sweep()

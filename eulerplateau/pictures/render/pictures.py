@@ -1,0 +1,130 @@
+"""The pictures of a run: stills, a contact sheet, shapes that turn, an animated sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.errors import OutputError
+from eulerplateau.pictures.gallery import Run, collect
+from eulerplateau.pictures.render.alignment import aligned
+from eulerplateau.pictures.render.choice import chosen_steps
+from eulerplateau.pictures.render.colours import (
+    SIDES,
+    SOAP,
+    Scale,
+    coloured_film,
+    loop_colours,
+    scale_of,
+)
+from eulerplateau.pictures.render.fields import read_field
+from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
+from eulerplateau.pictures.render.scene import Pixels, Scene
+from eulerplateau.pictures.render.view import View, common_view, turning_views
+from eulerplateau.runs import Shape, shape_name, write_whole
+
+_WIDTH, _FRAME_WIDTH = 1200, 640
+_TURN_FRAMES = 48
+_MILLISECONDS, _HOLD = 80, 1000
+
+
+@dataclass(frozen=True)
+class RunPictures:
+    """What the pictures of a run have in common.
+
+    Attributes
+    ----------
+    folder : the run folder; pictures go to its subfolder pictures/
+    run : its rows
+    shapes : one per row, each turned as little as can be from the one before it
+    places : the numbers of the rows to be shown
+    colour : "sides" (front of the film blue, back orange), "soap" (the same, translucent)
+        or a scalar field of the shape files
+    fields : by place, the values (n_v,) of that field; empty if it is none
+    scale : the colours of the field at all `places`
+    """
+
+    folder: Path
+    run: Run
+    shapes: tuple[Shape, ...]
+    places: tuple[int, ...]
+    colour: str
+    fields: dict[int, FloatArray]
+    scale: Scale | None
+
+    @classmethod
+    def read(cls, folder: Path, steps: Sequence[int], colour: str = SIDES) -> RunPictures:
+        """Read a run, of which `steps` (at least one) are to be shown.
+
+        Raises OutputError if a shape cannot be read, SpecError if there is no such step
+        or field.
+        """
+        found = collect([folder])
+        run, mesh = found.runs[0], found.meshes[0]
+        wanted = chosen_steps(run, steps, [])
+        places = [place for place, row in enumerate(run.rows) if row.step in wanted]
+        fields = {}
+        if colour not in (SIDES, SOAP):
+            names = {place: shape_name(run.rows[place].step) for place in places}
+            fields = {i: read_field(folder / name, colour) for i, name in names.items()}
+        scale = scale_of(colour, list(fields.values())) if fields else None
+        shapes = [
+            Shape(x, run.triangles(i), mesh.loop, row.step, row.kL3_alpha, row.energy)
+            for i, (row, x) in enumerate(zip(run.rows, run.shapes, strict=True))
+        ]
+        return cls(folder, run, tuple(shapes), tuple(places), colour, fields, scale)
+
+    def stills(self) -> None:
+        """Draw shape_*.png and, of several, a contact sheet, sheet.png.
+
+        The view is that of the whole run, so that pictures made at different times compare.
+        """
+        shapes = aligned(self.shapes)
+        view = common_view(shapes)
+        images = []
+        with Scene(_WIDTH) as scene:
+            for place in self.places:
+                images.append(self._picture(scene, place, shapes[place], view))
+                self._write(f"shape_{shapes[place].step:04d}", "png", png(images[-1]))
+        if len(images) > 1:
+            self._write("sheet", "png", contact_sheet(images))
+
+    def turns(self) -> None:
+        """Draw turn_*.gif: each shape once around, all in one scale."""
+        shapes = aligned(self.shapes)
+        views = turning_views(shapes, _TURN_FRAMES)
+        with Scene(_FRAME_WIDTH) as scene:
+            for place in self.places:
+                shape = shapes[place]
+                frames = [self._picture(scene, place, shape, view) for view in views]
+                content = gif(frames, [_MILLISECONDS] * len(frames))
+                self._write(f"turn_{shape.step:04d}", "gif", content)
+
+    def sweep(self) -> None:
+        """Draw sweep.gif: the shapes in sequence, held where a branch or leg ends."""
+        view = common_view(self.shapes)
+        ends = {series.last for series in self.run.series} | {self.places[-1]}
+        with Scene(_FRAME_WIDTH) as scene:
+            frames = [
+                self._picture(scene, place, self.shapes[place], view)
+                for place in self.places
+            ]
+        times = [_HOLD if place in ends else _MILLISECONDS for place in self.places]
+        self._write("sweep", "gif", gif(frames, times))
+
+    def _picture(self, scene: Scene, place: int, shape: Shape, view: View) -> Pixels:
+        values = self.fields.get(place)
+        film = coloured_film(shape, view.eye, self.colour, values, self.scale)
+        pixels = scene.pixels(shape, film, loop_colours(shape, values, self.scale), view)
+        return captioned(pixels, caption(self.run.rows[place]), self.scale)
+
+    def _write(self, name: str, suffix: str, content: bytes) -> None:
+        pictures = self.folder / "pictures"
+        try:
+            pictures.mkdir(exist_ok=True)
+        except OSError as error:
+            raise OutputError(pictures, f"cannot be made: {error.strerror}") from None
+        coloured = name if self.colour == SIDES else f"{name}_{self.colour}"
+        write_whole(pictures / f"{coloured}.{suffix}", content)

@@ -1,0 +1,139 @@
+"""The run folder: what a sweep has computed so far, valid after every step.
+
+It holds sweep.csv, one row per load; shapes/shape_0000.vtp and so on, one shape per row;
+sweep.pvd, the shapes as a series; run.json, what was run and how it ended; and, drawn
+later by others, diagram.png and pictures/shape_0000.png and so on.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.errors import OutputError
+from eulerplateau.mesh import DiskMesh
+from eulerplateau.runs.files import write_whole
+from eulerplateau.runs.shape_files import write_series, write_shape
+from eulerplateau.runs.table import Row, RowWriter
+
+# In run.json: without it a folder is not ours, and nothing in it is ever removed.
+_MARK = {"program": "eulerplateau"}
+_OUR_FILES = (
+    "sweep.csv",
+    "sweep.pvd",
+    "branches.csv",
+    "branches.pvd",
+    "branches.png",
+    "special_points.csv",
+    "diagram.png",
+    "shapes/shape_*.vtp",
+    "pictures/shape_*.png",
+    "pictures/sheet*.png",
+    "pictures/turn_*.gif",
+    "pictures/sweep*.gif",
+)
+
+
+def shape_name(step: int) -> str:
+    """Return the path of a step's shape inside the run folder."""
+    return f"shapes/shape_{step:04d}.vtp"
+
+
+class RunFolder:
+    """The folder of one run; make it with `create`, use it in a `with` statement.
+
+    Every file is replaced whole, and a row is written after its shape: an interrupted run
+    leaves nothing half done, and a row in sweep.csv means its shape is there.
+    """
+
+    def __init__(self, path: Path, name: str, row_type: type[Row]) -> None:
+        self.path = path
+        self._shapes: list[tuple[int, float, str]] = []
+        self._series = path / f"{name}.pvd"
+        self._rows = RowWriter(path / f"{name}.csv", row_type)
+
+    @classmethod
+    def create(
+        cls,
+        path: Path,
+        summary: Mapping[str, object],
+        name: str = "sweep",
+        row_type: type[Row] = Row,
+    ) -> RunFolder:
+        """Start a run in `path` with `summary` as its run.json; its table is `name`.csv.
+
+        An earlier run there is removed, which is to say its rows, shapes and pictures; a
+        folder that holds anything but a run, or a path that cannot be made a folder,
+        raises OutputError.
+        """
+        try:
+            if path.exists() and any(path.iterdir()):
+                _remove_run(path)
+            (path / "shapes").mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            problem = f"cannot be made a run folder: {error.strerror}"
+            raise OutputError(path, problem) from None
+        _write_summary(path, summary)
+        return cls(path, name, row_type)
+
+    def record(
+        self,
+        row: Row,
+        mesh: DiskMesh,
+        x: FloatArray,
+        modes: Mapping[str, FloatArray] | None = None,
+    ) -> None:
+        """Add the shape `x` (n_v, 3), with its critical `modes`, and then its row.
+
+        Raises OutputError if the disk is full or not writable; what was recorded before
+        stays valid.
+        """
+        name = shape_name(row.step)
+        write_shape(self.path / name, mesh, x, row, modes)
+        self._shapes.append((row.step, row.load, name))
+        write_series(self._series, self._shapes, row.load_name)
+        self._rows.append(row)
+
+    def write_summary(self, summary: Mapping[str, object]) -> None:
+        """Replace run.json by `summary`: plain data, all floats finite."""
+        _write_summary(self.path, summary)
+
+    def close(self) -> None:
+        """Close sweep.csv; everything is already on disk."""
+        self._rows.close()
+
+    def __enter__(self) -> RunFolder:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+def _write_summary(path: Path, summary: Mapping[str, object]) -> None:
+    text = json.dumps({**_MARK, **summary}, indent=2, allow_nan=False)
+    write_whole(path / "run.json", f"{text}\n".encode())
+
+
+def _remove_run(path: Path) -> None:
+    if not _is_run(path):
+        problem = "holds something else than a run: name an empty or a new folder"
+        raise OutputError(path, problem)
+    for pattern in _OUR_FILES:
+        for file in path.glob(pattern):
+            file.unlink()
+
+
+def _is_run(path: Path) -> bool:
+    try:
+        summary = json.loads((path / "run.json").read_bytes())
+    except (OSError, ValueError):
+        return False
+    return isinstance(summary, dict) and summary.items() >= _MARK.items()

@@ -1,0 +1,214 @@
+"""Tables of rows that are on disk as soon as they are computed: sweep.csv and others."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TypeVar
+
+from eulerplateau.errors import OutputError
+from eulerplateau.film import LOADS, SPRING_LOAD, Load
+from eulerplateau.solvers import Status
+
+
+@dataclass(frozen=True)
+class Row:
+    """One load of a sweep; its fields but the last, in this order, are sweep.csv's columns.
+
+    `quantity` says which of kL3_alpha and sigma_hat is to be taken for the load; the table
+    does not repeat it in every row, for run.json knows the film.
+
+    Units: lengths L, energies alpha/L, max_turning and waist_twist degrees. None is an
+    empty cell ("not computed"); a float that came out as NaN or infinite is written `nan`
+    or `inf`, so that the two stay apart (pandas reads an empty cell and `nan` as NaN).
+    """
+
+    step: int
+    kL3_alpha: float  # noqa: N815 - the column's name
+    sigma_hat: float
+    energy: float
+    film_energy: float
+    bending_energy: float
+    abs_kappa_n: float
+    total_gauss_curvature: float
+    area: float
+    n_unstable: int | None
+    lowest_eigenvalue: float | None
+    residual: float
+    length_error: float
+    iterations: int
+    seconds: float
+    status: Status
+    max_turning: float
+    waist_twist: float
+    self_intersections: int | None
+    aspect: float
+    min_angle: float
+    film_residual: float
+    quantity: str = field(default=SPRING_LOAD.column, kw_only=True)
+
+    @property
+    def load(self) -> float:
+        """The load, in the unit that `quantity` says."""
+        return float(getattr(self, self.quantity))
+
+    @property
+    def load_name(self) -> Load:
+        """What this load is called."""
+        return LOADS[self.quantity]
+
+    @property
+    def converged(self) -> bool:
+        """Whether the row is an equilibrium to be trusted."""
+        return self.status is Status.CONVERGED
+
+
+@dataclass(frozen=True)
+class BranchRow(Row):
+    """One point of a branch: a row of branches.csv, the columns of sweep.csv and these.
+
+    Attributes
+    ----------
+    branch : int, counted from 0
+    origin : int, the number of the special point the branch starts from; None for the first
+    special : int, the number of this special point; None for a regular point
+    arclength : float, from the special point the branch starts from, or its first point
+    """
+
+    branch: int
+    origin: int | None
+    special: int | None
+    arclength: float
+
+
+def columns(row_type: type[Row]) -> tuple[str, ...]:
+    """Return the names of the columns of a table of such rows."""
+    return tuple(column.name for column in fields(row_type) if not column.kw_only)
+
+
+COLUMNS = columns(Row)
+
+_INTEGERS = {
+    "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special"
+}  # fmt: skip
+_MAY_BE_EMPTY = {
+    "n_unstable", "lowest_eigenvalue", "self_intersections", "origin", "special"
+}  # fmt: skip
+
+RowType = TypeVar("RowType", bound=Row)
+
+
+class RowWriter:
+    """Appends rows to a CSV file, each whole and on disk when `append` returns.
+
+    Creating it starts the file anew with the header. Raises OutputError if the file
+    cannot be written; a row that did not fit (disk full) is taken back.
+    """
+
+    def __init__(self, path: Path, row_type: type[Row] = Row) -> None:
+        self._path = path
+        self._columns = columns(row_type)
+        try:
+            # Unbuffered: a row reaches the file in one write, and Ctrl-C finds no half.
+            self._file = path.open("wb", buffering=0)
+        except OSError as error:
+            raise OutputError(path, f"cannot be written: {error.strerror}") from None
+        try:
+            self._write_line(",".join(self._columns))
+        except OutputError:
+            self.close()
+            raise
+
+    def append(self, row: Row) -> None:
+        """Write `row`; floats by repr, so that they read back bit for bit."""
+        self._write_line(
+            ",".join(_cell(name, getattr(row, name)) for name in self._columns)
+        )
+
+    def close(self) -> None:
+        """Close the file; the rows are already on disk."""
+        self._file.close()
+
+    def __enter__(self) -> RowWriter:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _write_line(self, text: str) -> None:
+        line = f"{text}\n".encode("ascii")
+        start = self._file.tell()
+        try:
+            # A nearly full disk takes a part of the line without an error.
+            written = self._file.write(line)
+            if written < len(line):
+                self._file.write(line[written:])
+                if self._file.tell() < start + len(line):
+                    raise OSError(None, "no space left")
+        except OSError as error:
+            with suppress(OSError):
+                self._file.truncate(start)
+            problem = f"row cannot be written: {error.strerror}"
+            raise OutputError(self._path, problem) from None
+
+
+def read_rows(
+    path: Path,
+    row_type: type[RowType] = Row,  # type: ignore[assignment]
+    quantity: str = SPRING_LOAD.column,
+) -> list[RowType]:
+    """Read a table of rows back, bit for bit, with `quantity` for their load.
+
+    Raises OutputError naming the line and column that is not as RowWriter wrote it, or if
+    the file cannot be read.
+    """
+    try:
+        header, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
+    except OSError as error:
+        raise OutputError(path, f"cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise OutputError(path, "is not a text file; expected a sweep.csv") from None
+    names = columns(row_type)
+    if header != ",".join(names):
+        raise OutputError(path, f"the first line should be {','.join(names)}")
+    return [
+        row_type(**_values(path, names, number, line), quantity=quantity)
+        for number, line in enumerate(lines, start=2)
+    ]
+
+
+def _values(path: Path, names: tuple[str, ...], number: int, line: str) -> dict[str, Any]:
+    cells = line.split(",")
+    if len(cells) != len(names):
+        problem = f"line {number} has {len(cells)} cells, not {len(names)}"
+        raise OutputError(path, problem)
+    values = {}
+    for name, text in zip(names, cells, strict=True):
+        try:
+            values[name] = _value(name, text)
+        except ValueError as error:
+            raise OutputError(path, f"line {number}, {name}: {error}") from None
+    return values
+
+
+def _cell(name: str, value: Any) -> str:
+    if value is None:
+        return ""
+    if name == "status":
+        return str(value.value)
+    return str(int(value)) if name in _INTEGERS else repr(float(value))
+
+
+def _value(name: str, text: str) -> Any:
+    if text == "" and name in _MAY_BE_EMPTY:
+        return None
+    if name == "status":
+        return Status(text)
+    return int(text) if name in _INTEGERS else float(text)

@@ -1,0 +1,1 @@
+"""solvers/large_loops."""

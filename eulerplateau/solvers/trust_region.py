@@ -1,0 +1,47 @@
+"""The trust-region subproblem in the Hessian's eigenbasis (More and Sorensen 1983)."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import brentq
+
+from eulerplateau.arrays import FloatArray
+
+
+def trust_region_step(
+    eigenvalues: FloatArray, gradient: FloatArray, radius: float
+) -> FloatArray:
+    """Minimise g.p + p.diag(w).p / 2 over |p| <= radius, the global minimum.
+
+    eigenvalues : (m,) ascending; gradient : (m,), in the eigenbasis. Where the gradient
+    has no part along the most negative eigenvector (the hard case, e.g. at a saddle), the
+    step goes along that eigenvector, towards its positive side.
+    """
+    w, g = eigenvalues, gradient
+    if w[0] > 0 and np.linalg.norm(g / w) <= radius:
+        newton: FloatArray = -g / w
+        return newton
+    # Unknown is the gap between the shift and the least shift that is allowed, not the
+    # shift: in the nearly hard case the gap is small and the step goes with its inverse.
+    lifted = w + max(0.0, -float(w[0]))
+    least = np.finfo(np.float64).eps * max(float(np.abs(w).max()), 1e-300)
+
+    def length(gap: float) -> float:
+        return float(np.linalg.norm(g / (lifted + gap)))
+
+    if length(least) <= radius:
+        step: FloatArray = -g / (lifted + least)
+        step[0] = 0.0
+        rest = np.sqrt(max(radius**2 - float(step @ step), 0.0))
+        step[0] = -rest if g[0] > 0 else rest
+        return step
+    # Nearly linear in the gap, unlike the length itself.
+    gap = brentq(
+        lambda gap: 1 / radius - 1 / length(gap),
+        least,
+        float(np.linalg.norm(g)) / radius + least,
+        xtol=least * 1e-10,
+        rtol=1e-12,
+    )
+    bounded: FloatArray = -g / (lifted + gap)
+    return bounded

@@ -1,0 +1,222 @@
+"""The whole diagram of the elongated film: what hangs together, and what is stable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.exploration import Limits, Visit, explore
+from eulerplateau.branches.point import BranchPoint
+from eulerplateau.branches.special import SpecialPoint
+from eulerplateau.loop.motions import rigid_motions
+from tests.helpers import diagram
+from tests.helpers.diagram import SETTINGS, Diagram
+
+
+@pytest.fixture(scope="module")
+def found() -> Diagram:
+    return diagram.elongated()
+
+
+@pytest.fixture(scope="module")
+def points(found: Diagram) -> tuple[SpecialPoint, ...]:
+    """Twist, end of the twist, bending of the eight: where states replace each other."""
+    twist = next(visit for visit in found.branch(0) if visit.special)
+    untwist = found.from_special(twist.number)[0][-1]
+    eights = found.from_special(untwist.number)
+    bend = next(visit for branch in eights for visit in branch if visit.special)
+    return tuple(visit.special for visit in (twist, untwist, bend) if visit.special)
+
+
+def thickness(point: BranchPoint) -> float:
+    centred = point.x - point.x.mean(axis=0)
+    return float(np.linalg.svd(centred, compute_uv=False)[2])
+
+
+def index(point: BranchPoint) -> int:
+    return point.stability.n_unstable
+
+
+def test_planar_branch_is_stable_up_to_the_twist(
+    found: Diagram, points: tuple[SpecialPoint, ...]
+) -> None:
+    twist = points[0].point.load
+    for point in diagram.regular(found.branch(0)):
+        assert thickness(point) < 1e-9
+        assert (index(point) == 0) == (point.load < twist)
+
+
+def test_twisted_branch_runs_from_the_plane_to_the_eight_on_both_sides(
+    found: Diagram, points: tuple[SpecialPoint, ...]
+) -> None:
+    twist, untwist, _ = points
+    sides = found.from_special(0)
+    assert len(sides) == 2
+    ends = [side[-1] for side in sides]
+    assert ends[0].number == ends[1].number
+    assert [end.known for end in ends] == [False, True]
+    for side, sign in zip(sides, (1, -1), strict=True):
+        regular = diagram.regular(side)
+        twists = [sign * found.twist(point) for point in regular]
+        turned = np.sign(twists[0])
+        assert all(0 < turned * angle < 180 for angle in twists)
+        assert sorted(twists, key=abs) == twists
+        assert all(index(point) == 0 for point in regular)
+        loads = [point.load for point in regular]
+        assert min(loads) > twist.point.load
+        assert max(loads) < untwist.point.load
+
+
+def test_eight_is_stable_between_the_twist_and_the_bend(
+    found: Diagram, points: tuple[SpecialPoint, ...]
+) -> None:
+    """A planar film with half a turn, at all loads; its window is the paper's."""
+    _, untwist, bend = points
+    down, up = sorted(
+        found.from_special(number_of(found, untwist)), key=lambda b: b[0].point.load
+    )
+    assert down[-1].point.load < 5.0
+    assert up[-1].point.load > 3000.0
+    for point in diagram.regular(down + up):
+        assert thickness(point) < 1e-9
+        assert abs(found.twist(point)) == pytest.approx(180.0, abs=1e-6)
+        inside = untwist.point.load < point.load < bend.point.load
+        assert index(point) == (0 if inside else 1)
+
+
+def number_of(found: Diagram, special: SpecialPoint) -> int | None:
+    return next(visit.number for visit in found.visits if visit.special is special)
+
+
+def test_branch_that_leaves_the_eight_is_stable_and_bent(
+    found: Diagram, points: tuple[SpecialPoint, ...]
+) -> None:
+    bend = points[2]
+    sides = found.from_special(number_of(found, bend))
+    assert len(sides) == 2
+    for side in sides:
+        regular = diagram.regular(side)
+        assert all(index(point) == 0 for point in regular)
+        assert all(point.load > bend.point.load for point in regular)
+        assert all(thickness(point) > 0.01 for point in regular)
+
+
+def test_index_changes_only_at_special_points(found: Diagram) -> None:
+    for number in {visit.branch for visit in found.visits}:
+        for before, after in pairwise(found.branch(number)):
+            if before.special is None and after.special is None:
+                assert index(before.point) == index(after.point)
+
+
+def test_numbers_count_the_special_points(found: Diagram) -> None:
+    """In the order in which they are found; each again by its own number."""
+    new = [visit.number for visit in found.visits if visit.special and not visit.known]
+    assert new == list(range(len(new)))
+    for visit in found.visits:
+        if visit.known:
+            assert visit.number is not None
+            first = found.specials[visit.number]
+            assert visit.point.load == pytest.approx(first.point.load, rel=1e-8)
+
+
+def test_branches_start_from_special_points_found_before(found: Diagram) -> None:
+    seen: set[int] = set()
+    for visit in found.visits:
+        assert visit.origin is None or visit.origin in seen
+        if visit.number is not None:
+            seen.add(visit.number)
+
+
+def test_arclength_rises_along_each_branch(found: Diagram) -> None:
+    for number in {visit.branch for visit in found.visits}:
+        lengths = [visit.point.arclength for visit in found.branch(number)]
+        assert lengths == sorted(set(lengths))
+
+
+def short(found: Diagram, limits: Limits) -> Iterator[Visit]:
+    """Explore loads around the twisted saddle only."""
+    settings = replace(SETTINGS, load_range=(600.0, 1000.0))
+    start = diagram.stable_point(found.problem, found.mesh, 610.0, settings)
+    return explore(start, settings, limits)
+
+
+@pytest.mark.parametrize(("allowed", "branches"), [(0, 1), (1, 3), (2, 5)])
+def test_limit_on_special_points_is_kept(
+    found: Diagram, allowed: int, branches: int
+) -> None:
+    visits = list(short(found, Limits(special_points=allowed)))
+    assert len({visit.branch for visit in visits}) == branches
+    assert {visit.origin for visit in visits} <= {None, *range(allowed)}
+
+
+def test_limit_on_unstable_modes_is_kept(found: Diagram) -> None:
+    """A branch is left at its first point beyond the limit."""
+    visits = list(short(found, Limits(special_points=0, unstable_modes=0)))
+    indices = [index(visit.point) for visit in visits if visit.special is None]
+    assert indices == [0] * (len(indices) - 1) + [1]
+    assert max(visit.point.load for visit in visits) < 1000.0
+
+
+def test_predicate_ends_each_branch(found: Diagram) -> None:
+    limits = Limits(special_points=1, stop=lambda point: point.load > 690.0)
+    visits = list(short(found, limits))
+    for number in {visit.branch for visit in visits}:
+        loads = [v.point.load for v in visits if v.branch == number and v.special is None]
+        assert [load > 690.0 for load in loads] == [False] * (len(loads) - 1) + [True]
+
+
+def test_index_agrees_with_a_dense_count_on_the_whole_mesh(found: Diagram) -> None:
+    """All 3 n_v coordinates, the kernels' Hessian, the tangent space by an SVD.
+
+    The film's interior adds positive curvature only, so that eliminating it keeps the
+    number of negative directions.
+    """
+    checked = {}
+    for visit in found.visits:
+        if visit.special is None:
+            checked[visit.branch // 2, index(visit.point)] = visit.point
+    assert {n for _, n in checked} == {0, 1, 2}
+    for (_, expected), point in checked.items():
+        values = whole_spectrum(found, point)
+        assert int((values < 0).sum()) == expected
+        # The count is not decided by rounding.
+        assert np.abs(values).min() > 1e-9 * values.max()
+
+
+def whole_spectrum(found: Diagram, point: BranchPoint) -> FloatArray:
+    """Spectrum of the Lagrangian's second variation on the constraint's tangent space."""
+    problem, x = found.problem, found.film(point)
+    n, along_z = len(x), np.zeros_like(x)
+    hessian = np.empty((n, n))
+    for v in range(n):
+        # Quadratic energies: the gradient at a unit vector is a column of the Hessian.
+        along_z[v, 2] = 1.0
+        force = problem.film_energy(along_z, point.load)[1]
+        force = force + problem.bending_energy(along_z)[1]
+        force = force + problem.tension_force(along_z, point.model.multipliers)
+        hessian[:, v] = force[:, 2]
+        along_z[v, 2] = 0.0
+    tangent = scipy.linalg.null_space(
+        np.vstack([length_rows(found, x), rigid_motions(x).T])
+    )
+    assert tangent.shape[1] == 3 * n - found.mesh.n_b - 6
+    # tangent^T (hessian (x) I_3) tangent
+    curved = np.einsum("uv,vdk->udk", hessian, tangent.reshape(n, 3, -1), optimize=True)
+    projected = tangent.T @ curved.reshape(3 * n, -1)
+    values: FloatArray = np.linalg.eigvalsh(0.5 * (projected + projected.T))
+    return values
+
+
+def length_rows(found: Diagram, x: FloatArray) -> FloatArray:
+    """Gradients (n_b, 3 n_v) of the squared lengths of the loop's edges."""
+    loop = found.mesh.loop
+    rows = np.zeros((len(loop), *x.shape))
+    for row, (v, w) in zip(rows, zip(loop, np.roll(loop, -1), strict=True), strict=True):
+        row[v], row[w] = x[v] - x[w], x[w] - x[v]
+    return rows.reshape(len(loop), -1)

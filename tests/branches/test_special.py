@@ -1,0 +1,237 @@
+"""Special points: located by an eigenvalue to rounding, whatever way one comes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.continuation import advance, follow
+from eulerplateau.branches.point import BranchPoint, Settings
+from eulerplateau.branches.special import (
+    BIFURCATION,
+    FOLD,
+    SpecialPoint,
+    branches_from,
+    special_points,
+)
+from eulerplateau.branches.symmetry import OPERATIONS, loop_distance
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers.problem import Problem, make_problem
+from tests.helpers import diagram
+from tests.helpers.diagram import SETTINGS, Diagram
+from tests.helpers.equilibria import planar
+from tests.helpers.shapes import fitted_order
+
+PRECISION = 1e-8  # relative, of the loads at 474 vertices
+MIRROR = np.array([1.0, 1.0, -1.0])
+
+
+@pytest.fixture(scope="module")
+def found() -> Diagram:
+    return diagram.elongated()
+
+
+@pytest.fixture(scope="module")
+def onset(found: Diagram) -> SpecialPoint:
+    """Where the planar branch first loses its stability, to the twisted saddle."""
+    return found.specials[0]
+
+
+def specials_along(
+    problem: Problem, start: BranchPoint, settings: Settings
+) -> list[SpecialPoint]:
+    before, specials = start, []
+    for after in follow(start, settings):
+        specials += special_points(before, after, settings)
+        before = after
+    return specials
+
+
+def test_critical_eigenvalue_vanishes_within_its_error_bound(found: Diagram) -> None:
+    assert len(found.specials) >= 4
+    for special in found.specials:
+        assert abs(special.eigenvalue) <= special.point.stability.error_bound
+        assert special.load_error < PRECISION * special.point.load
+
+
+def test_mode_is_the_critical_one(found: Diagram) -> None:
+    """It keeps the lengths, and the Hessian takes it to nothing."""
+    for special in found.specials:
+        model = special.point.model
+        mode = model.basis.T @ (special.mode.ravel() * model.scale)
+        assert np.linalg.norm(mode) == pytest.approx(1.0)
+        largest = np.abs(model.eigen[0]).max()
+        assert np.linalg.norm(model.hessian @ mode) < 1e-13 * largest
+
+
+@pytest.mark.parametrize(("number", "mode"), [(0, 0), (1, 1)])
+def test_loads_agree_with_interpolated_eigenvalues(
+    found: Diagram, number: int, mode: int
+) -> None:
+    """The planar state at two close loads, found without continuation."""
+    special = found.specials[number]
+    close = special.point.load + np.array([-0.05, 0.05])
+    states = planar(found.problem, found.mesh, [*np.arange(300.0, close[0], 200.0), *close])
+    low, high = (model.eigen[0][mode] for model in states[-2:])
+    assert low * high < 0
+    crossing = close[0] + (close[1] - close[0]) * low / (low - high)
+    assert crossing == pytest.approx(special.point.load, rel=PRECISION)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "step"), [(600.0, 700.0, 0.03), (655.0, 1200.0, 0.004)]
+)
+def test_onset_does_not_depend_on_window_start_or_step(
+    found: Diagram, onset: SpecialPoint, low: float, high: float, step: float
+) -> None:
+    settings = Settings((low, high), high, first_step=step, largest_step=step)
+    start = diagram.stable_point(found.problem, found.mesh, low, settings)
+    first, *_ = specials_along(found.problem, start, settings)
+    assert first.point.load == pytest.approx(onset.point.load, rel=PRECISION)
+    assert first.symmetry.breaks == onset.symmetry.breaks
+
+
+def test_both_ends_of_a_branch_find_the_same_points(found: Diagram) -> None:
+    """The eight is met from both sides of the twisted saddle: stated errors suffice."""
+    met = [v.special for v in found.visits if v.special is not None and v.special.arrived]
+    assert len(met) >= 2
+    first, *others = met
+    for other in others:
+        error = first.load_error + other.load_error
+        assert abs(other.point.load - first.point.load) <= error
+
+
+def test_index_changes_by_the_multiplicity(found: Diagram) -> None:
+    for branch in {visit.branch for visit in found.visits}:
+        visits = found.branch(branch)
+        for before, here, after in zip(visits, visits[1:], visits[2:], strict=False):
+            if here.special is None:
+                continue
+            assert here.special.multiplicity == 1
+            ends = [side.point.stability.n_unstable for side in (before, after)]
+            assert sorted(ends) == [here.special.n_unstable, here.special.n_unstable + 1]
+
+
+def test_onset_of_the_hexagon_is_double(hexagon: DiskMesh) -> None:
+    """A saddle may point any way: two modes are lost together, as one event."""
+    problem = make_problem(hexagon)
+    settings = Settings(load_range=(800.0, 900.0), load_unit=900.0)
+    start = diagram.stable_point(problem, hexagon, 800.0, settings)
+    (onset,) = specials_along(problem, start, settings)
+    assert onset.multiplicity == 2
+    assert onset.n_unstable == 0
+    assert onset.symmetry.transverse > 0.999
+
+
+def test_first_mode_twists(onset: SpecialPoint) -> None:
+    """Out of the plane; all mirrors and the inversion break, the half turns stay."""
+    assert onset.symmetry.transverse > 0.999
+    turns = {name for name in OPERATIONS if name.startswith("half turn")}
+    assert set(onset.symmetry.keeps) == turns
+    assert set(onset.symmetry.breaks) == OPERATIONS.keys() - turns
+
+
+def test_eights_mode_bends_its_lobes(found: Diagram) -> None:
+    """Out of the plane; the mirrors across the plane's axes and one half turn stay."""
+    bent = max(
+        (special for special in found.specials if special.n_unstable == 0),
+        key=lambda special: special.point.load,
+    )
+    assert bent.symmetry.transverse > 0.999
+    assert set(bent.symmetry.keeps) == {
+        "mirror across long axis",
+        "mirror across middle axis",
+        "half turn about short axis",
+    }
+
+
+def test_sides_of_a_pitchfork_are_mirror_images(found: Diagram) -> None:
+    for special in found.specials:
+        if special.arrived:
+            continue
+        one, other = branches_from(special, SETTINGS)
+        assert loop_distance(one.x, other.x * MIRROR) < 1e-6
+        assert other.load == pytest.approx(one.load, rel=1e-9)
+        assert found.energy(other) == pytest.approx(found.energy(one), rel=1e-9)
+        assert found.twist(one) == pytest.approx(-found.twist(other), rel=1e-5)
+
+
+def test_pitchforks_open_as_the_square_of_the_amplitude(found: Diagram) -> None:
+    """load - onset grows as the square of the displacement along the mode, upwards."""
+    for special in found.specials:
+        if special.arrived:
+            continue
+        side = next(iter(branches_from(special, SETTINGS)))
+        fine = Settings(SETTINGS.load_range, SETTINGS.load_unit, 2e-4, 2e-4, max_points=12)
+        points = list(follow(side, fine))
+        excess = [point.load - special.point.load for point in points]
+        assert min(excess) > 0
+        sizes = [amplitude(found.problem, special, point) for point in points]
+        assert fitted_order(sizes, excess) == pytest.approx(2.0, abs=0.02)
+
+
+def amplitude(problem: Problem, special: SpecialPoint, point: BranchPoint) -> float:
+    moved = (point.x - special.point.x) * special.mode
+    return float(problem.loop.mean_lengths @ moved.sum(axis=1))
+
+
+def test_pitchforks_are_supercritical(found: Diagram) -> None:
+    """A side branch exists where the other one is less stable, and takes its stability."""
+    for special in found.specials:
+        if special.arrived:
+            continue
+        above = advance(special.point, 2e-3, SETTINGS)
+        below = advance(special.point, -2e-3, SETTINGS)
+        assert above is not None
+        assert below is not None
+        assert above.load > special.point.load > below.load
+        assert above.stability.n_unstable == special.n_unstable + 1
+        assert below.stability.n_unstable == special.n_unstable
+        for side in branches_from(special, SETTINGS):
+            assert side.load > special.point.load
+            assert side.stability.n_unstable == special.n_unstable
+
+
+def test_folds_are_told_from_bifurcations() -> None:
+    """A fold: the load is extreme, quadratically; no symmetry breaks, no branch leaves."""
+    problem, start, settings = diagram.folding_branch()
+    specials = specials_along(problem, start, settings)
+    (fold,) = (special for special in specials if special.kind == FOLD)
+    assert {special.kind for special in specials} == {FOLD, BIFURCATION}
+    assert fold.symmetry.breaks == ()
+    assert abs(fold.eigenvalue) <= fold.point.stability.error_bound
+    assert fold.load_error < PRECISION * fold.point.load
+    assert list(branches_from(fold, settings)) == []
+    steps = [1e-3, 2e-3, 4e-3]
+    ends = both_ways(problem, fold.point, steps, settings)
+    rise = [sum(end.load for end in pair) - 2 * fold.point.load for pair in ends]
+    assert min(rise) > 0
+    assert fitted_order(steps, rise) == pytest.approx(2.0, abs=0.05)
+    for pair in ends:
+        indices = sorted(end.stability.n_unstable for end in pair)
+        assert indices == [fold.n_unstable, fold.n_unstable + 1]
+
+
+def both_ways(
+    problem: Problem, point: BranchPoint, steps: Sequence[float], settings: Settings
+) -> list[list[BranchPoint]]:
+    back = replace(point, direction=point.direction.reversed())
+    ends = []
+    for step in steps:
+        pair = [advance(way, step, settings) for way in (point, back)]
+        ends.append([end for end in pair if end is not None])
+    assert all(len(pair) == 2 for pair in ends)
+    return ends
+
+
+def test_mode_of_a_fold_is_the_branch_direction() -> None:
+    problem, start, settings = diagram.folding_branch()
+    fold = next(s for s in specials_along(problem, start, settings) if s.kind == FOLD)
+    mass = problem.loop.mean_lengths[:, None]
+    assert abs(fold.point.direction.load) < 1e-6 * settings.load_unit
+    overlap: FloatArray = mass * fold.mode * fold.point.direction.displacement
+    assert abs(overlap.sum()) == pytest.approx(1.0, abs=1e-6)

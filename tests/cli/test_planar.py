@@ -1,0 +1,110 @@
+"""`eulerplateau planar`: what it prints, its exit codes, its figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from eulerplateau.cli.planar import planar
+from eulerplateau.errors import OutputError, SpecError
+from eulerplateau.exact.planar import LOBES, planar_film, thresholds
+from eulerplateau.pictures.planar import ENERGY, GALLERY
+
+
+def output(*arguments: str) -> str:
+    result = CliRunner().invoke(planar, arguments, catch_exceptions=False)
+    assert result.exit_code == 0
+    return result.stdout
+
+
+def test_table_as_json_has_every_digit_of_every_threshold() -> None:
+    rows = json.loads(output("table", "--json"))
+    assert [row["n"] for row in rows] == list(LOBES)
+    for row in rows:
+        limits = thresholds(row["n"])
+        assert row == {
+            "n": limits.n,
+            "sigma_buckling": limits.sigma_buckling,
+            "sigma_contact": limits.sigma_contact,
+            "sigma_line_contact": limits.sigma_line_contact,
+        }
+
+
+@pytest.mark.parametrize(
+    ("load", "regime"),
+    [
+        ("0", "disk"),
+        ("1488", "disk"),
+        ("1600", "buckled"),
+        ("4000", "point-contact"),
+        ("1e8", "line-contact"),
+    ],
+)
+def test_shape_as_json_in_every_regime(load: str, regime: str) -> None:
+    row = json.loads(output("shape", "--n", "2", "--sigma-hat", load, "--json"))
+    film = planar_film(2, float(load))
+    assert row == {
+        "energy": film.energy,
+        "area": film.area,
+        "kappa_max": film.kappa_max,
+        "kappa_min": film.kappa_min,
+        "beta_hat": film.beta_hat,
+        "regime": regime,
+    }
+
+
+def test_without_json_the_same_numbers_can_be_read() -> None:
+    lines = output("table").splitlines()[1:]
+    for n, line in zip(LOBES, lines, strict=True):
+        limits = thresholds(n)
+        loads = (limits.sigma_buckling, limits.sigma_contact, limits.sigma_line_contact)
+        assert [float(word) for word in line.split()] == pytest.approx(
+            [n, *loads], rel=1e-13
+        )
+    shape = dict(
+        line.split() for line in output("shape", "-n3", "--sigma-hat=5000").splitlines()
+    )
+    assert float(shape["energy"]) == pytest.approx(planar_film(3, 5000).energy, rel=1e-14)
+    assert shape["regime"] == "buckled"
+
+
+@pytest.mark.parametrize(
+    ("n", "load", "key"),
+    [
+        ("1", "2000", "n"),
+        ("13", "2000", "n"),
+        ("2", "-1", "sigma_hat"),
+        ("2", "nan", "sigma_hat"),
+    ],
+)
+def test_impossible_films_are_refused(n: str, load: str, key: str) -> None:
+    result = CliRunner().invoke(planar, ["shape", "--n", n, f"--sigma-hat={load}"])
+    assert isinstance(result.exception, SpecError)
+    assert result.exception.key == key
+    assert result.exception.exit_code == 2
+
+
+@pytest.mark.parametrize("arguments", [["shape", "--n", "two"], ["shape"], ["figures"]])
+def test_wrong_arguments_end_with_two(arguments: list[str]) -> None:
+    assert CliRunner().invoke(planar, arguments).exit_code == 2
+
+
+def test_figures_show_something_and_keep_clear_of_their_edges(tmp_path: Path) -> None:
+    from matplotlib.image import imread
+
+    output("figures", "--out", str(tmp_path / "new" / "folder"))
+    for name in (GALLERY, ENERGY):
+        image = imread(tmp_path / "new" / "folder" / name)[..., :3]
+        assert image.std() > 0.05
+        edges = [image[:2], image[-2:], image[:, :2], image[:, -2:]]
+        assert all(np.all(edge == 1) for edge in edges)
+
+
+def test_figures_that_cannot_be_written_are_an_output_error(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    result = CliRunner().invoke(planar, ["figures", "--out", str(tmp_path / "file" / "in")])
+    assert isinstance(result.exception, OutputError)

@@ -1,0 +1,69 @@
+"""What the command line loads, and how soon it answers."""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+from eulerplateau.mesh import write_mesh
+from eulerplateau.mesh.disk import DiskMesh
+
+HEAVY = {"gmsh", "pyvista", "trimesh", "matplotlib", "meshio"}
+
+
+def loaded_by(*words: object) -> set[str]:
+    """Top-level packages that `eulerplateau WORDS` imports."""
+    result = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "eulerplateau", *map(str, words)],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return {
+        line.split("|")[-1].strip().partition(".")[0]
+        for line in result.stderr.splitlines()
+        if line.startswith("import time:")
+    }
+
+
+def test_sweep_on_a_stored_mesh_loads_no_mesher_and_no_plotting_library(
+    tmp_path: Path, oval: DiskMesh
+) -> None:
+    write_mesh(oval, tmp_path / "oval.vtp")
+    spec = tmp_path / "run.toml"
+    spec.write_text('[mesh]\nfile = "oval.vtp"\n[sweep]\nloads = [500, 900]\n')
+    loaded = loaded_by("sweep", "--no-pictures", "--quiet", spec)
+    assert {"numpy", "scipy", "numba", "eulerplateau"} <= loaded
+    assert not loaded & HEAVY
+
+
+def test_help_loads_no_numerical_library() -> None:
+    """What makes it quick, whatever the machine."""
+    for words in (("--help",), ("sweep", "--help"), ("mesh", "--help"), ("--version",)):
+        loaded = loaded_by(*words)
+        assert not loaded & (HEAVY | {"numpy", "scipy", "numba", "pydantic", "tqdm"})
+
+
+def test_help_answers_within_three_tenths_of_a_second() -> None:
+    """Of processor time, which other work on the machine does not lengthen."""
+    clock = (
+        "import resource, subprocess, sys\n"
+        "subprocess.run(sys.argv[1:], check=True, capture_output=True)\n"
+        "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
+        "sys.stdout.write(str(used.ru_utime + used.ru_stime))\n"
+    )
+    module = ["-m", "eulerplateau", "--help"]
+    times = [
+        float(
+            subprocess.run(
+                [sys.executable, "-c", clock, sys.executable, *module],
+                capture_output=True,
+                text=True,
+                check=True,
+            ).stdout
+        )
+        for _ in range(5)
+    ]
+    assert statistics.median(times) < 0.3

@@ -1,0 +1,105 @@
+"""The area's second variation by the loop: against all of the Hessian, and differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film.area import area
+from eulerplateau.film.area_energy import AreaEnergy
+from eulerplateau.film.interior import Chart, chart_at
+from eulerplateau.loop.loop import Loop
+from eulerplateau.mesh.disk import DiskMesh
+from tests.helpers import shapes, soap_films, twins
+
+RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1
+
+
+def enneper(rings: int, jitter: float) -> DiskMesh:
+    points, triangles = shapes.disk_points(rings, jitter)
+    return shapes.mesh_of(shapes.enneper(points, RADIUS), triangles)
+
+
+@pytest.fixture(scope="module")
+def chart() -> Chart:
+    """A chart at a curved film that is not at rest, and without symmetry."""
+    mesh = enneper(4, 0.2)
+    turned = shapes.rotation()
+    return chart_at(area(mesh), (mesh.x * [1.1, 1.0, 0.8]) @ turned.T)
+
+
+def whole(chart: Chart, x: FloatArray) -> FloatArray:
+    """The Hessian by the loop (3 n_b) and then by the heights (n_i), nothing eliminated."""
+    varied, film = chart.variations, chart.film
+    n_b, inside = len(film.loop), film.interior
+    columns = np.zeros((film.n_v, 3, 3 * n_b + len(inside)))
+    for d in range(3):
+        columns[np.arange(film.n_v), d, 3 * varied.leader + d] = varied.weight
+    columns[inside, :, 3 * n_b + np.arange(len(inside))] = chart.normals
+    flat = columns.reshape(3 * film.n_v, -1)
+    found: FloatArray = flat.T @ (soap_films.hessian(film, x) @ flat)
+    return found
+
+
+def test_condensed_hessian_is_the_schur_complement(chart: Chart) -> None:
+    x_loop = chart.x[chart.film.loop] + shapes.wave(len(chart.film.loop), 0.01)
+    found = chart.relax(x_loop)
+    hessian, n = whole(chart, found.x), x_loop.size
+    coupling = hessian[n:, :n]
+    expected = hessian[:n, :n] - coupling.T @ np.linalg.solve(hessian[n:, n:], coupling)
+    scale = np.abs(expected).max()
+    np.testing.assert_allclose(found.hessian, expected, atol=1e-12 * scale)
+    np.testing.assert_array_equal(found.hessian, found.hessian.T)
+
+
+@pytest.mark.parametrize("load", [30.0, 3000.0])
+def test_condensed_hessian_has_the_index_of_the_whole(chart: Chart, load: float) -> None:
+    """Sylvester's law: the eliminated block is positive definite, so the index stays."""
+    loop = Loop(np.full(len(chart.film.loop), 1 / len(chart.film.loop)))
+    energy = AreaEnergy(loop, chart, load)
+    x_loop = chart.x[chart.film.loop] + shapes.wave(len(chart.film.loop), 0.01)
+    condensed = energy.lagrangian_hessian(x_loop, np.zeros(len(chart.film.loop)))
+    full, n = load * whole(chart, chart.relax(x_loop).x), len(condensed)
+    full[:n, :n] += np.kron(energy.bending, np.eye(3))
+    indices = []
+    for hessian in (condensed, full):
+        values = np.linalg.eigvalsh(hessian)
+        # Translations cost nothing, and rounding would decide their sign.
+        indices.append(int((values < -1e-12 * values[-1]).sum()))
+    assert indices[0] == indices[1]
+    assert (indices[0] > 0) == (load > 1000)
+
+
+def test_hessian_of_a_flat_film_leaves_a_remainder_of_third_order(oval: DiskMesh) -> None:
+    chart = chart_at(area(oval), oval.x)
+    x_loop = oval.x[oval.loop]
+    hessian = chart.relax(x_loop).hessian
+
+    def curved(x: FloatArray) -> tuple[float, FloatArray]:
+        moved = (x - x_loop).ravel()
+        found, bent = chart.relax(x), hessian @ moved
+        return found.area - 0.5 * float(moved @ bent), found.force - bent.reshape(-1, 3)
+
+    # Steep enough for the film to leave its plane, and its polygon to change.
+    slope = twins.taylor_slope(curved, x_loop, shapes.wave(len(chart.film.loop), 0.05))
+    assert slope == pytest.approx(3.0, abs=0.1)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.2])
+def test_hessian_is_the_forces_derivative_to_second_order_in_the_mesh(
+    jitter: float,
+) -> None:
+    """On curved films; displacements are the same on every mesh, per length of the loop."""
+    rings, gaps = [10, 14, 20, 28, 40], []
+    for number in rings:
+        mesh = enneper(number, jitter)
+        chart = chart_at(area(mesh), mesh.x)
+        x_loop = mesh.x[mesh.loop]
+        step = shapes.wave(len(chart.film.loop), 1e-4)
+        ahead, behind = chart.relax(x_loop + step), chart.relax(x_loop - step)
+        curvature = 0.5 * float(np.vdot(ahead.force - behind.force, step))
+        found = float(step.ravel() @ chart.relax(x_loop).hessian @ step.ravel())
+        gaps.append(abs(found / curvature - 1))
+    order = shapes.fitted_order([1 / number for number in rings], gaps)
+    assert order == pytest.approx(2.0, abs=0.2)

@@ -1,0 +1,122 @@
+"""Twisted soap films for tests: points of the branches that leave the plane."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.continuation import follow
+from eulerplateau.branches.point import (
+    BranchPoint,
+    Direction,
+    Settings,
+    correct,
+    first_point,
+)
+from eulerplateau.branches.special import SpecialPoint, branches_from, special_points
+from eulerplateau.film.area import AreaFilm
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers import newton
+from eulerplateau.solvers.problem import make_problem
+from tests.helpers import shapes
+
+# The disk gives way across its plane to cos 2 phi here (sigma_hat).
+DISK_TWISTS = 96 * np.pi**3
+SETTINGS = Settings(load_range=(1000.0, 4000.0), load_unit=2000.0)
+# Once a film's chart has been made at its own shape so often, the two agree to rounding.
+_CHARTS = 6
+
+
+def irregular_disk(rings: int, jitter: float = 0.15) -> DiskMesh:
+    """A disk without symmetry inside its loop of even edges."""
+    points, triangles = shapes.disk_points(rings, jitter)
+    points[-6 * rings :] = shapes.disk_points(rings)[0][-6 * rings :]
+    return shapes.mesh_of(points, triangles)
+
+
+def hessian(film: AreaFilm, x: FloatArray) -> csr_array:
+    """The area's Hessian (3 n_v, 3 n_v) at a shape; vertex v has rows 3 v ... 3 v + 2."""
+    i, k = film.pairs
+    row = 3 * i[:, None, None] + np.arange(3)[:, None]
+    column = 3 * k[:, None, None] + np.arange(3)
+    blocks = film.hessian(film.sides(x))
+    row, column, blocks = np.broadcast_arrays(row, column, blocks)
+    entries = (blocks.ravel(), (row.ravel(), column.ravel()))
+    return csr_array(entries, shape=(x.size, x.size))
+
+
+def turn(angle: float) -> FloatArray:
+    """The rotation (3, 3) about the z axis."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def two_lobed(mesh: DiskMesh, load: float, angle: float = 0.0) -> BranchPoint:
+    """The planar two-lobed film, its long axis turned by `angle` against the mesh."""
+    problem = make_problem(mesh, "area")
+    oval = turn(angle) @ np.diag([1.25, 0.8, 1.0]) @ turn(angle).T
+    found = newton.solve(problem, mesh.x @ oval, np.zeros(mesh.n_b), load)
+    assert found.converged
+    if found.triangles is not None:
+        problem = problem.with_triangles(found.triangles)
+    return first_point(problem.near(found.x), found.x[mesh.loop], load, SETTINGS)
+
+
+def twist_point(planar: BranchPoint) -> SpecialPoint:
+    """The first bifurcation above a point of the planar branch."""
+    before = planar
+    for after in follow(planar, SETTINGS):
+        for special in special_points(before, after, SETTINGS):
+            return special
+        before = after
+    raise AssertionError("no bifurcation met")
+
+
+def twisted_from_two_lobed(special: SpecialPoint, load: float) -> BranchPoint:
+    """The point of the branch that leaves the two-lobed film, at a load below."""
+    for point in follow(next(branches_from(special, SETTINGS)), SETTINGS):
+        if point.load < load:
+            break
+    still = Direction(np.zeros_like(point.x), SETTINGS.load_unit)
+    return _recharted(point, point.x, load, still)
+
+
+def twisted_disk(mesh: DiskMesh, size: float, angle: float = 0.0) -> BranchPoint:
+    """The point of the branch that leaves the disk at 96 pi^3, twisted by so much.
+
+    `size` is the r.m.s. displacement along cos 2 (phi - angle), in units of L.
+    """
+    problem = make_problem(mesh, "area").at(mesh.x)
+    circle = mesh.x[mesh.loop]
+    phi = np.arctan2(circle[:, 1], circle[:, 0])
+    mode = np.outer(np.cos(2 * (phi - angle)), [0.0, 0.0, 1.0])
+    mode /= np.sqrt(problem.loop.mean_lengths @ (mode**2).sum(axis=1))
+    along = Direction(mode, 0.0)
+    point = correct(problem, circle + size / 3 * mode, DISK_TWISTS, along, SETTINGS)
+    assert point is not None
+    for _ in range(2):
+        point = _recharted(point, point.x + size / 3 * mode, point.load, along)
+    return point
+
+
+def _recharted(
+    point: BranchPoint, guess: FloatArray, load: float, direction: Direction
+) -> BranchPoint:
+    """The equilibrium near a guess (n_b, 3), its chart made at the film itself."""
+    for _ in range(_CHARTS):
+        there = point.problem.at(point.film)
+        found = correct(there, guess, load, direction, SETTINGS)
+        assert found is not None
+        point = replace(found, arclength=point.arclength)
+        guess, load = point.x, point.load
+    return point
+
+
+def mesh_of(point: BranchPoint, mesh: DiskMesh) -> DiskMesh:
+    """The mesh with the triangles that the film of a point has come to."""
+    film = point.problem.film
+    assert isinstance(film, AreaFilm)
+    return replace(mesh, triangles=film.triangles)

@@ -1,0 +1,306 @@
+"""The gallery page: all of a run is in it, exactly where exactness is promised."""
+
+from __future__ import annotations
+
+import base64
+import json
+import math
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.errors import OutputError
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.pictures.gallery import collect, page
+from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.table import COLUMNS, BranchRow
+from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
+from tests.runs.test_output import ROW
+
+MEGABYTE = 1e6
+
+PAGE = Path(__file__).parents[2] / "eulerplateau" / "pictures" / "gallery"
+
+
+@pytest.fixture(scope="module")
+def mesh() -> DiskMesh:
+    return mesh_of(*disk_points(6, jitter=0.2))
+
+
+def twisted(mesh: DiskMesh, t: float) -> FloatArray:
+    """The film of eq. eight, which turns from a disk to a flat eight as t goes to 1."""
+    return 0.1 * eight(mesh.x[:, :2] / np.hypot(*mesh.x.T[:2]).max(), t)
+
+
+def sweep(path: Path, mesh: DiskMesh, loads: Sequence[float]) -> Path:
+    with RunFolder.create(path, {"status": "finished"}) as folder:
+        for step, load in enumerate(loads):
+            row = replace(ROW, step=step, kL3_alpha=load, sigma_hat=3.4 * load)
+            folder.record(row, mesh, twisted(mesh, load / 1000.0))
+    return path
+
+
+def branches(path: Path, mesh: DiskMesh) -> Path:
+    """A flat branch, and two that leave it at its middle point, to either side."""
+    loads = [0.0, 100.0, 200.0, 250.0, 300.0, 250.0, 300.0]
+    twists = [0.0, 0.0, 0.0, 0.2, 0.3, -0.2, -0.3]
+    with RunFolder.create(path, {}, "branches", BranchRow) as folder:
+        for step, (load, twist) in enumerate(zip(loads, twists, strict=True)):
+            row = BranchRow(
+                **asdict(replace(ROW, step=step, kL3_alpha=load)),
+                branch=max(0, (step - 1) // 2),
+                origin=7 if step > 2 else None,
+                special=7 if step == 1 else None,
+                arclength=0.0,
+            )
+            folder.record(row, mesh, twisted(mesh, twist) @ rotation())
+    (path / "special_points.csv").write_text("number,kind,breaks\n7,bifurcation,mirror\n")
+    return path
+
+
+class Page(HTMLParser):
+    """What a browser would take from the page."""
+
+    def __init__(self, content: bytes) -> None:
+        super().__init__()
+        self.attributes: list[tuple[str, str, str | None]] = []
+        self.data: dict[str, Any] = {}
+        self._is_data = False
+        self.feed(content.decode())
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.attributes += [(tag, name, value) for name, value in attrs]
+        self._is_data = ("id", "data") in attrs
+
+    def handle_data(self, text: str) -> None:
+        if self._is_data:
+            self.data = json.loads(text)
+
+    def handle_endtag(self, tag: str) -> None:
+        self._is_data = False
+
+
+def unpacked(text: str, kind: str) -> Any:
+    return np.frombuffer(base64.b64decode(text), dtype=kind)
+
+
+def test_page_holds_every_row_and_every_shape_to_16_bits(
+    tmp_path: Path, mesh: DiskMesh
+) -> None:
+    gallery = collect([sweep(tmp_path / "run", mesh, [1.0, 400.0, 900.0])])
+    (run,) = gallery.runs
+    data = Page(page(gallery)).data
+    (shown,) = data["runs"]
+    (its_mesh,) = data["meshes"]
+    assert (
+        unpacked(its_mesh["triangles"], "<u4").tolist() == mesh.triangles.ravel().tolist()
+    )
+    assert unpacked(its_mesh["loop"], "<u4").tolist() == mesh.loop.tolist()
+    x = data["unit"] * unpacked(shown["shapes"], "<i2").reshape(run.shapes.shape)
+    assert np.abs(x - run.shapes).max() < 1e-5
+    for row, cells in zip(run.rows, shown["rows"], strict=True):
+        for name, cell in zip(data["columns"], cells, strict=True):
+            value = getattr(row, name, None)
+            if isinstance(value, float):
+                assert cell == pytest.approx(value, rel=1e-9)
+            else:
+                assert cell == (value.value if name == "status" else value)
+
+
+def test_columns_the_page_shows_are_those_of_the_table() -> None:
+    static = (
+        Path(__file__).parents[2]
+        / "eulerplateau"
+        / "pictures"
+        / "gallery"
+        / "quantities.js"
+    )
+    lines = static.read_text().splitlines()
+    keys = {line.split('key: "')[1].split('"')[0] for line in lines if "key: " in line}
+    assert keys <= set(COLUMNS)
+    assert len(keys) > 10
+
+
+def test_cells_that_are_not_numbers_are_null(tmp_path: Path, mesh: DiskMesh) -> None:
+    row = replace(ROW, energy=math.nan, area=math.inf, n_unstable=None)
+    with RunFolder.create(tmp_path / "run", {}) as folder:
+        folder.record(row, mesh, mesh.x)
+    data = Page(page(collect([tmp_path / "run"]))).data
+    cells = dict(zip(data["columns"], data["runs"][0]["rows"][0], strict=True))
+    assert [cells[name] for name in ("energy", "area", "n_unstable")] == [None] * 3
+
+
+def test_page_refers_to_nothing_outside_it_and_may_not(
+    tmp_path: Path, mesh: DiskMesh
+) -> None:
+    content = Page(page(collect([sweep(tmp_path / "run", mesh, [1.0])])))
+    names = {name for _, name, _ in content.attributes}
+    assert names & {"src", "href", "srcset", "action", "data", "poster"} == set()
+    (policy,) = [v for _, name, v in content.attributes if name == "content" and "src" in v]
+    assert "default-src 'none'" in policy
+    assert "http" not in policy
+
+
+def test_names_of_folders_cannot_break_out_of_their_place(
+    tmp_path: Path, mesh: DiskMesh
+) -> None:
+    name = "a<b>&\"c' {{data}} <!--<script>"
+    data = Page(page(collect([sweep(tmp_path / name, mesh, [1.0])]))).data
+    assert data["runs"][0]["name"] == name
+
+
+def test_hundred_shapes_of_547_vertices_stay_below_10_megabytes(tmp_path: Path) -> None:
+    fine = mesh_of(*disk_points(13))
+    loads = list(np.linspace(1.0, 900.0, 100))
+    content = page(collect([sweep(tmp_path / "run", fine, loads)]))
+    assert fine.n_v == 547
+    assert len(content) < 10 * MEGABYTE
+
+
+def test_runs_on_one_mesh_share_its_triangles(tmp_path: Path, mesh: DiskMesh) -> None:
+    other = mesh_of(*disk_points(4))
+    folders = [
+        sweep(tmp_path / "a" / "run", mesh, [1.0, 2.0]),
+        sweep(tmp_path / "b" / "run", other, [1.0]),
+        branches(tmp_path / "c", mesh),
+    ]
+    gallery = collect([*folders, folders[0]])
+    assert [run.name for run in gallery.runs] == ["a/run", "b/run", f"{tmp_path.name}/c"]
+    assert [run.mesh for run in gallery.runs] == [0, 1, 0]
+    assert len(gallery.meshes) == 2
+    # A run starts where the first on its mesh does, turned alike.
+    assert np.allclose(gallery.runs[0].shapes[0], gallery.runs[2].shapes[0], atol=1e-3)
+
+
+def test_branches_start_at_their_special_point(tmp_path: Path, mesh: DiskMesh) -> None:
+    (run,) = collect([branches(tmp_path / "run", mesh)]).runs
+    places = [(series.origin, series.first, series.last) for series in run.series]
+    assert places == [(None, 0, 2), (1, 3, 4), (1, 5, 6)]
+    assert run.series[1].group == run.series[2].group != run.series[0].group
+    assert run.special[7]["kind"] == "bifurcation"
+    for series in run.series[1:]:
+        step = run.shapes[series.first] - run.shapes[1]
+        assert np.abs(step).max() < 0.05
+
+
+@pytest.mark.parametrize(
+    ("loads", "legs"),
+    [
+        ([5.0], [(None, 0, 0)]),
+        ([5.0, 5.0], [(None, 0, 1)]),
+        ([1.0, 2.0, 3.0], [(None, 0, 2)]),
+        ([3.0, 2.0, 1.0], [(None, 0, 2)]),
+        ([1.0, 2.0, 3.0, 2.0, 1.0], [(None, 0, 2), (2, 3, 4)]),
+        ([2.0, 1.0, 2.0, 1.0], [(None, 0, 1), (1, 2, 2), (2, 3, 3)]),
+    ],
+)
+def test_sweep_is_split_where_its_load_turns(
+    tmp_path: Path, mesh: DiskMesh, loads: list[float], legs: list[Any]
+) -> None:
+    (run,) = collect([sweep(tmp_path / "run", mesh, loads)]).runs
+    assert [(leg.origin, leg.first, leg.last) for leg in run.series] == legs
+
+
+@pytest.mark.parametrize(
+    ("spoil", "at_fault"),
+    [
+        (lambda run: (run / "sweep.csv").unlink(), ""),
+        (lambda run: (run / shape_name(1)).unlink(), shape_name(1)),
+        (lambda run: (run / shape_name(1)).write_bytes(b"<VTKFile"), shape_name(1)),
+        (lambda run: (run / "sweep.csv").write_text("load\n1\n"), "sweep.csv"),
+    ],
+    ids=["no table", "missing shape", "broken shape", "other table"],
+)
+def test_folder_that_is_no_whole_run_is_named(
+    tmp_path: Path, mesh: DiskMesh, spoil: Any, at_fault: str
+) -> None:
+    run = sweep(tmp_path / "run", mesh, [1.0, 2.0])
+    spoil(run)
+    with pytest.raises(OutputError) as caught:
+        collect([run])
+    assert caught.value.path == run / at_fault
+
+
+def test_run_without_rows_is_named(tmp_path: Path, mesh: DiskMesh) -> None:
+    run = sweep(tmp_path / "run", mesh, [])
+    with pytest.raises(OutputError) as caught:
+        collect([run])
+    assert caught.value.path == run
+
+
+def test_shapes_of_two_meshes_in_one_run_are_refused(
+    tmp_path: Path, mesh: DiskMesh
+) -> None:
+    run = sweep(tmp_path / "run", mesh, [1.0, 2.0])
+    other = sweep(tmp_path / "other", mesh_of(*disk_points(4)), [1.0, 2.0])
+    (other / shape_name(1)).replace(run / shape_name(1))
+    with pytest.raises(OutputError) as caught:
+        collect([run])
+    assert caught.value.path == run / shape_name(1)
+
+
+def test_table_of_special_points_that_is_none_is_named(
+    tmp_path: Path, mesh: DiskMesh
+) -> None:
+    run = branches(tmp_path / "run", mesh)
+    (run / "special_points.csv").write_text("kind\nfold\n")
+    with pytest.raises(OutputError) as caught:
+        collect([run])
+    assert caught.value.path == run / "special_points.csv"
+    (run / "special_points.csv").unlink()
+    assert collect([run]).runs[0].special == {}
+
+
+def run_command(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "eulerplateau", "gallery", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_command_writes_the_page_whole_or_says_why_not(
+    tmp_path: Path, mesh: DiskMesh
+) -> None:
+    run = sweep(tmp_path / "run", mesh, [1.0, 2.0])
+    out = tmp_path / "page.html"
+    assert run_command(run, "-o", out).returncode == 0
+    content = out.read_bytes()
+    assert content == page(collect([run]))
+    for arguments, code in (
+        ((), 2),
+        ((run, "-o", tmp_path / "missing" / "page.html"), 5),
+        ((run, "-o", tmp_path), 5),
+        ((tmp_path, "-o", out), 5),
+        ((tmp_path / "nowhere", "-o", out), 5),
+    ):
+        ended = run_command(*arguments)
+        assert ended.returncode == code
+        assert "Traceback" not in ended.stderr
+    assert out.read_bytes() == content
+    assert {file.name for file in tmp_path.iterdir()} == {"run", "page.html"}
+
+
+def test_vendored_libraries_are_those_named_and_carry_their_licences() -> None:
+    vendor = PAGE / "vendor"
+    pinned = json.loads((vendor / "package.json").read_text())["devDependencies"]
+    libraries = (vendor / "libraries.min.js").read_text(encoding="utf-8")
+    licences = (vendor / "LICENSES.txt").read_text(encoding="utf-8")
+    assert f"Chart.js v{pinned['chart.js']}" in libraries
+    assert f"chartjs-plugin-zoom v{pinned['chartjs-plugin-zoom']}" in libraries
+    assert f'"{pinned["three"].split(".")[1]}"' in libraries
+    for name in ("three", "chart.js", "chartjs-plugin-zoom", "hammerjs"):
+        assert f"== {name}\n" in licences
+    # Either would end the script or the comment they stand in.
+    assert "</script" not in libraries.lower()
+    assert "<!--" not in libraries
+    assert "-->" not in licences

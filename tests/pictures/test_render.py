@@ -1,0 +1,252 @@
+"""Renders: all of every film is seen, at one scale; animations do not jump."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.pictures.render import STILLS, SWEEP, TURN, RunPictures, draw_shapes
+from tests.helpers.shapes import disk_points, eight, fitted_order, mesh_of, rotation
+from tests.runs.test_folder import start
+from tests.runs.test_output import ROW
+
+Image = NDArray[np.uint8]
+
+N_SHAPES = 7
+FLAT, FOLDED = 0, 5
+
+
+@pytest.fixture(scope="module")
+def mesh() -> DiskMesh:
+    return mesh_of(*disk_points(8))
+
+
+def twisted(mesh: DiskMesh, t: float) -> FloatArray:
+    """The film of eq. eight, flat at t = 0, without symmetry, its loop of length 1."""
+    x = eight(mesh.x[:, :2] * [1.2, 1.0] / np.hypot(*mesh.x.T[:2]).max(), t)
+    x[:, 2] += t * (0.3 * x[:, 0] ** 2 + 0.2 * x[:, 1] ** 3)
+    loop = x[mesh.loop]
+    return x / np.linalg.norm(np.roll(loop, -1, axis=0) - loop, axis=1).sum()
+
+
+def record(path: Path, mesh: DiskMesh, films: list[FloatArray]) -> None:
+    """A sweep of `films`, each left lying in a way of its own."""
+    turn, lie = rotation(), np.eye(3)
+    with start(path) as folder:
+        for step, x in enumerate(films):
+            lie = lie @ turn
+            row = replace(ROW, step=step, kL3_alpha=100.0 * step)
+            folder.record(row, mesh, x @ lie + step)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory, mesh: DiskMesh) -> Path:
+    """Six films that twist more and more, and the first again at half its size."""
+    path = tmp_path_factory.mktemp("render")
+    films = [twisted(mesh, t) for t in np.linspace(0.0, 0.9, N_SHAPES - 1)]
+    record(path, mesh, [*films, 0.5 * films[0]])
+    return path
+
+
+@pytest.fixture(scope="module")
+def drawn(run: Path) -> Callable[[str, str, tuple[int, ...]], Path]:
+    """Draw each kind of picture once."""
+    done: set[tuple[str, str, tuple[int, ...]]] = set()
+
+    def draw(kind: str, colour: str, steps: tuple[int, ...]) -> Path:
+        if (kind, colour, steps) not in done:
+            assert draw_shapes(run, steps, kind, colour)
+            done.add((kind, colour, steps))
+        return run / "pictures"
+
+    return draw
+
+
+Draw = Callable[[str, str, tuple[int, ...]], Path]
+EVERY = tuple(range(N_SHAPES))
+
+
+def read(path: Path) -> Image:
+    from PIL import Image as Images
+
+    with Images.open(path) as image:
+        return np.asarray(image.convert("RGB"))
+
+
+def frames(path: Path) -> tuple[list[Image], list[int]]:
+    """The frames of a GIF and how long each is shown, in milliseconds."""
+    from PIL import Image as Images
+
+    images, times = [], []
+    with Images.open(path) as animation:
+        for number in range(getattr(animation, "n_frames", 1)):
+            animation.seek(number)
+            images.append(np.asarray(animation.convert("RGB")))
+            times.append(animation.info["duration"])
+    return images, times
+
+
+def above(image: Image) -> Image:
+    """The image without what is written at its lower edge."""
+    return image[: int(0.88 * len(image))]
+
+
+def inked(image: Image) -> NDArray[np.bool_]:
+    return above(image).min(axis=2) < 250
+
+
+def width(image: Image) -> int:
+    columns = np.flatnonzero(inked(image).any(axis=0))
+    return int(columns[-1] - columns[0] + 1)
+
+
+def assert_whole(image: Image) -> None:
+    """Something is seen, and white all around it: it is not cut off, nor under the text."""
+    ink = inked(image)
+    assert ink.mean() > 0.02
+    for edge in (ink[0], ink[-1], ink[:, 0], ink[:, -1]):
+        assert not edge.any()
+    assert (image[int(0.88 * len(image)) :].min(axis=2) < 128).any()  # the caption
+
+
+def test_all_of_every_shape_is_seen_and_captioned(drawn: Draw) -> None:
+    for step in EVERY:
+        assert_whole(read(drawn(STILLS, "sides", EVERY) / f"shape_{step:04d}.png"))
+
+
+def test_all_pictures_have_one_scale(drawn: Draw) -> None:
+    pictures = drawn(STILLS, "sides", EVERY)
+    large, small = (width(read(pictures / f"shape_{step:04d}.png")) for step in (0, 6))
+    # The tube, 0.007 L wide in all pictures, is a fiftieth of the film's width.
+    tube = 0.007 / 0.35 * large
+    assert (large - tube) / (small - tube) == pytest.approx(2.0, rel=0.02)
+
+
+def test_the_view_is_the_runs_whatever_is_shown(drawn: Draw, run: Path) -> None:
+    pictures = drawn(STILLS, "sides", EVERY)
+    together = read(pictures / "shape_0003.png")
+    assert draw_shapes(run, [3])
+    assert (read(pictures / "shape_0003.png") == together).all()
+
+
+def test_contact_sheet_shows_every_shape(drawn: Draw) -> None:
+    sheet = read(drawn(STILLS, "sides", EVERY) / "sheet.png")
+    height, wide = 300, 400
+    cells = [
+        sheet[y : y + height, x : x + wide]
+        for y in range(0, len(sheet), height)
+        for x in range(0, sheet.shape[1], wide)
+    ]
+    assert len(cells) >= N_SHAPES
+    for cell in cells[:N_SHAPES]:
+        assert_whole(cell)
+    assert all((cell == 255).all() for cell in cells[N_SHAPES:])
+
+
+def test_a_film_that_turns_over_shows_two_colours_in_every_style(drawn: Draw) -> None:
+    steps = (FLAT, FOLDED)
+    for style, name in (("sides", ""), ("soap", "_soap")):
+        pictures = drawn(STILLS, style, EVERY if style == "sides" else steps)
+        flat, folded = (read(pictures / f"shape_{s:04d}{name}.png") for s in steps)
+        assert bluish(flat) > 0.1
+        assert reddish(flat) < 0.001
+        assert bluish(folded) > 0.02
+        assert reddish(folded) > 0.02
+
+
+def bluish(image: Image) -> float:
+    colours = above(image).astype(int)
+    return float((colours[..., 2] > colours[..., 0] + 15).mean())
+
+
+def reddish(image: Image) -> float:
+    colours = above(image).astype(int)
+    return float((colours[..., 0] > colours[..., 2] + 15).mean())
+
+
+@pytest.mark.parametrize("field", ["angle_defect", "kappa_n"])
+def test_a_field_has_its_colours_and_their_bar(drawn: Draw, field: str) -> None:
+    """Neither field vanishes on a film that is twisted; both do on a flat one."""
+    pictures = drawn(STILLS, field, (FLAT, FOLDED))
+    flat, folded = (
+        read(pictures / f"shape_{step:04d}_{field}.png") for step in (FLAT, FOLDED)
+    )
+    assert reddish(flat) + bluish(flat) < 0.001
+    assert reddish(folded) + bluish(folded) > 0.005
+    for image in (flat, folded):
+        assert_whole(image)
+        bar = image[int(0.88 * len(image)) :, image.shape[1] // 2 :].astype(int)
+        assert np.ptp(bar[..., 0] - bar[..., 2]) > 200
+
+
+def test_a_turn_goes_once_around_without_leaving_the_picture(drawn: Draw) -> None:
+    images, times = frames(drawn(TURN, "sides", (FOLDED,)) / f"turn_{FOLDED:04d}.gif")
+    assert len(set(times)) == 1
+    for image in images:
+        assert_whole(image)
+    steps = [unlike(a, b) for a, b in zip(images, [*images[1:], images[0]], strict=True)]
+    assert 0.0 < max(steps) < 0.5 * max(unlike(images[0], image) for image in images)
+
+
+def test_a_sweep_shows_each_shape_and_holds_the_last(drawn: Draw) -> None:
+    images, times = frames(drawn(SWEEP, "sides", EVERY) / "sweep.gif")
+    assert len(images) == N_SHAPES
+    assert times[-1] > 5 * times[0]
+    for image in images:
+        assert_whole(image)
+
+
+def unlike(a: Image, b: Image) -> float:
+    """Which part of two pictures differs."""
+    return float((np.abs(a.astype(int) - b).max(axis=2) > 30).mean())
+
+
+def test_frames_of_one_shape_however_it_lies_are_alike(
+    tmp_path: Path, mesh: DiskMesh
+) -> None:
+    record(tmp_path, mesh, [twisted(mesh, 0.4)] * 2)
+    shapes = RunPictures.read(tmp_path, [0, 1]).shapes
+    assert np.abs(shapes[0].x - shapes[1].x).max() < 1e-12
+
+
+def test_displacement_from_frame_to_frame_is_proportional_to_the_step(
+    tmp_path: Path, mesh: DiskMesh
+) -> None:
+    """From flat to past the quarter turn, where principal axes would swap with a jump."""
+    counts = [8, 16, 32]
+    largest = []
+    for count in counts:
+        folder = tmp_path / str(count)
+        record(folder, mesh, [twisted(mesh, t) for t in np.linspace(0.0, 0.9, count + 1)])
+        shapes = RunPictures.read(folder, range(count + 1)).shapes
+        x = np.array([shape.x[shape.loop] for shape in shapes])
+        largest.append(float(np.linalg.norm(np.diff(x, axis=0), axis=2).max()))
+    assert fitted_order([1.0 / count for count in counts], largest) == pytest.approx(
+        1.0, abs=0.1
+    )
+
+
+def test_the_child_says_nothing_without_a_display(run: Path) -> None:
+    """VTK complains that there is no X server before it finds that it needs none."""
+    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    command = [
+        sys.executable,
+        "-m",
+        "eulerplateau.pictures.render",
+        str(run),
+        STILLS,
+        "sides",
+        "0",
+    ]
+    child = subprocess.run(command, env=environment, capture_output=True, check=True)
+    assert child.stdout == child.stderr == b""

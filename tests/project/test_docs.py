@@ -1,0 +1,161 @@
+"""The documentation: its examples run, its links lead somewhere, and its site builds."""
+
+from __future__ import annotations
+
+import ast
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import click
+import pytest
+
+from eulerplateau.cli import commands
+from eulerplateau.mesh import MeshSpec
+from eulerplateau.runs.spec import load_run
+from eulerplateau.settings import load_toml
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted(DOCS.glob("*.md"))
+TUTORIAL = DOCS / "tutorial.md"
+
+# As the committed runs, which take longer: one flat state and one out of the plane.
+SHORT_RUN = '[mesh]\nfile = "../meshes/{}.vtp"\n[sweep]\nloads = [600, 700]\n'
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    """Return the fenced blocks of a page in one language, in order."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.M | re.S)
+
+
+def command_lines(page: Path, program: str) -> list[list[str]]:
+    """Return the shell lines of a page that call `program`, as words without comments."""
+    lines = [line for block in blocks(page, "sh") for line in block.splitlines()]
+    words = [shlex.split(line, comments=True) for line in lines]
+    return [line for line in words if line and line[0].startswith(program)]
+
+
+def named(block: str) -> str:
+    """Return the file a TOML block says it is, in its first line."""
+    return block.splitlines()[0].removeprefix("# ")
+
+
+@pytest.fixture
+def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return a folder like the repository's, which the test then is in.
+
+    Its runs are short, and the tutorial's files are in it.
+    """
+    shutil.copytree(ROOT / "meshes", tmp_path / "meshes")
+    (tmp_path / "runs").mkdir()
+    for name in ("elongated", "hexagon"):
+        (tmp_path / "runs" / f"{name}.toml").write_text(SHORT_RUN.format(name))
+    for block in blocks(TUTORIAL, "toml"):
+        (tmp_path / named(block)).write_text(block)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*arguments: str) -> None:
+    """Run the program as a user does; fails the test unless it exits with 0."""
+    subprocess.run([sys.executable, "-m", "eulerplateau", *arguments], check=True)
+
+
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if blocks(page, "python")], ids=lambda page: page.stem
+)
+def test_python_examples_run_in_order(page: Path, clone: Path) -> None:
+    if page.stem == "gallery":
+        run("sweep", "runs/elongated.toml", "--no-pictures", "--quiet")
+    names: dict[str, object] = {"__name__": "__main__"}
+    for block in blocks(page, "python"):
+        exec(compile(block, str(page), "exec"), names)
+
+
+def test_specifications_of_the_tutorial_are_valid(clone: Path) -> None:
+    specifications = [clone / named(block) for block in blocks(TUTORIAL, "toml")]
+    assert {path.parent.name for path in specifications} == {"meshes", "runs"}
+    for path in specifications:
+        if path.parent.name == "meshes":
+            load_toml(path, MeshSpec)
+        else:
+            assert load_run(path, {}).loads()
+
+
+def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
+    lines = command_lines(TUTORIAL, "eulerplateau")
+    assert {line[1] for line in lines} == set(commands.commands) - {"planar"}
+    for line in lines:
+        run(*line[1:])
+    for written in (
+        "runs/elongated/diagram.png",
+        "runs/elongated/sweep.pvd",
+        "runs/kite/sweep.csv",
+        "runs/kite/pictures/sheet.png",
+        "runs/kite-branches/special_points.csv",
+        "elongated.html",
+        "kite.html",
+        "kite.png",
+    ):
+        assert (clone / written).stat().st_size > 0
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_commands_of_every_page_have_the_options_they_are_given(page: Path) -> None:
+    for _, name, *arguments in command_lines(page, "eulerplateau"):
+        options = {
+            option
+            for parameter in commands.commands[name].params
+            if isinstance(parameter, click.Option)
+            for option in (*parameter.opts, *parameter.secondary_opts)
+        }
+        assert {word for word in arguments if word.startswith("-")} <= options
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_scripts_of_every_page_exist(page: Path) -> None:
+    mentioned = set(re.findall(r"\bscripts/[a-z]+\b", page.read_text()))
+    assert all((ROOT / script).is_file() for script in mentioned)
+
+
+@pytest.mark.parametrize("page", [ROOT / "README.md", *PAGES], ids=lambda page: page.stem)
+def test_relative_links_and_images_lead_to_files(page: Path) -> None:
+    targets = re.findall(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)", page.read_text())
+    local = [target for target in targets if not target.startswith("http")]
+    assert [target for target in local if not (page.parent / target).is_file()] == []
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Return the built pages by name; any warning of the build is an error."""
+    folder = tmp_path_factory.mktemp("site")
+    build = ["-P", "-m", "mkdocs", "build", "--strict"]
+    where = ["--config-file", str(ROOT / "mkdocs.yml"), "--site-dir", str(folder)]
+    subprocess.run([sys.executable, *build, *where], check=True)
+    return {path.stem: path.read_text() for path in folder.glob("*.html")}
+
+
+def test_site_has_every_page_and_loads_nothing_from_elsewhere(site: dict[str, str]) -> None:
+    assert site.keys() == {page.stem for page in PAGES} | {"404"}
+    for text in site.values():
+        loaded = re.findall(r"<(?:script|link|img)\b[^>]*\b(?:src|href)=\"([^\"]*)\"", text)
+        assert loaded
+        assert not [address for address in loaded if re.match(r"https?:|//", address)]
+
+
+def test_interface_page_documents_what_examples_import(site: dict[str, str]) -> None:
+    documented = re.findall(r'id="eulerplateau\.([\w.]+)"', site["api"])
+    for page in (TUTORIAL, DOCS / "model.md", DOCS / "planar.md"):
+        tree = ast.parse("".join(blocks(page, "python")))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module.startswith("eulerplateau"):
+                module = node.module.partition(".")[2]
+                for name in (alias.name for alias in node.names):
+                    assert any(
+                        found.startswith(module) and found.split(".")[-1] == name
+                        for found in documented
+                    ), f"{node.module}.{name}"

@@ -1,0 +1,149 @@
+"""The architecture: imports point only down the layers; what is not used is not loaded."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from importlib.util import resolve_name
+from pathlib import Path
+
+import pytest
+
+import eulerplateau
+
+# The rooms of docs/architecture.md from the ground up.
+ROOMS = (
+    "ground",
+    "exact",
+    "loop",
+    "mesh",
+    "film",
+    "solvers",
+    "branches",
+    "runs",
+    "pictures",
+)
+LEVEL = {room: level for level, room in enumerate([*ROOMS, "cli"])}
+GROUND = {"__init__", "__main__", "arrays", "errors", "settings"}
+# Compiled loops that other rooms call: numba wants what calls each other in one file.
+SHARED_KERNELS = {"eulerplateau.loop.kernels", "eulerplateau.loop.slide_kernels"}
+
+NUMERICS = {"numba", "numpy", "scipy"}
+HEAVY = {"gmsh", "matplotlib", "meshio", "pyvista", "trimesh", "vtk", "vtkmodules"}
+
+ROOT = Path(eulerplateau.__file__).parent
+
+
+def module_name(path: Path) -> str:
+    """Return the dotted name of a file of the package."""
+    parts = path.relative_to(ROOT.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+FILES = {module_name(path): path for path in sorted(ROOT.rglob("*.py"))}
+
+
+LIBRARY = ", ".join(module for module in FILES if not module.endswith("__main__"))
+
+# Arguments of python, and what the run must not load.
+LIGHT_RUNS = [
+    pytest.param(["-c", "import eulerplateau"], NUMERICS | HEAVY, id="package"),
+    pytest.param(["-c", f"import {LIBRARY}"], HEAVY, id="every module"),
+    pytest.param(["-m", "eulerplateau", "--help"], NUMERICS | HEAVY, id="help"),
+]
+
+
+def room(module: str) -> str:
+    """Return the room a dotted name of the package belongs to."""
+    part = [*module.split("."), "__init__"][1]
+    return "ground" if part in GROUND else part
+
+
+def imports(node: ast.AST, package: str) -> Iterator[str]:
+    """Yield the dotted names, module or not, that one statement imports."""
+    if isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+    elif isinstance(node, ast.ImportFrom):
+        base = resolve_name("." * node.level + (node.module or ""), package)
+        yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def targets(module: str) -> set[str]:
+    """Return the modules of the package that `module` imports, in its functions too."""
+    path = FILES[module]
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    names = (
+        name
+        for node in ast.walk(ast.parse(path.read_text()))
+        for name in imports(node, package)
+        if name.split(".")[0] == "eulerplateau"
+    )
+    return {name if name in FILES else name.rpartition(".")[0] for name in names}
+
+
+def loaded_at_import(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield what runs when a module is imported: not functions, not `if TYPE_CHECKING`."""
+    for child in ast.iter_child_nodes(node):
+        typing_only = isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test)
+        if not isinstance(child, ast.FunctionDef | ast.Lambda) and not typing_only:
+            yield child
+            yield from loaded_at_import(child)
+
+
+def test_rooms_are_the_folders_and_the_ground_is_five_files() -> None:
+    assert {room(module) for module in FILES} == LEVEL.keys()
+    assert {path.stem for path in ROOT.glob("*.py")} == GROUND
+
+
+def entrance(module: str) -> bool:
+    """Whether this is where the program begins: it may call what stands above it."""
+    return module == "eulerplateau.__main__"
+
+
+@pytest.mark.parametrize("module", FILES)
+def test_imports_never_point_up(module: str) -> None:
+    level = LEVEL[room(module)]
+    above = {target for target in targets(module) if LEVEL[room(target)] > level}
+    assert above == set() or entrance(module)
+
+
+@pytest.mark.parametrize("module", FILES)
+def test_other_rooms_are_reached_through_their_faces(module: str) -> None:
+    others = {t for t in targets(module) if room(t) not in ("ground", room(module))}
+    assert {t for t in others - SHARED_KERNELS if FILES[t].name != "__init__.py"} == set()
+
+
+def test_imports_never_run_in_a_circle() -> None:
+    # Raises CycleError, which names the circle.
+    TopologicalSorter({module: targets(module) for module in FILES}).prepare()
+
+
+@pytest.mark.parametrize("module", FILES)
+def test_heavy_libraries_are_imported_where_they_are_used(module: str) -> None:
+    tree = ast.parse(FILES[module].read_text())
+    names = {name for node in loaded_at_import(tree) for name in imports(node, module)}
+    assert {name.split(".")[0] for name in names} & HEAVY == set()
+
+
+@pytest.mark.parametrize(("arguments", "unwanted"), LIGHT_RUNS)
+def test_a_run_does_not_load_what_it_does_not_use(
+    arguments: list[str], unwanted: set[str]
+) -> None:
+    run = subprocess.run(
+        [sys.executable, "-X", "importtime", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    # Lines of "import time: self [us] | cumulative | indented name".
+    loaded = {
+        line.rpartition("|")[2].strip().split(".")[0]
+        for line in run.stderr.splitlines()
+        if line.startswith("import time:")
+    }
+    assert "eulerplateau" in loaded
+    assert loaded & unwanted == set()

@@ -1,0 +1,195 @@
+"""The set-up: made once, redone when it must be, recovered when interrupted.
+
+The logic is tried with a stand-in for Python, in a second; continuous integration does the
+real thing, because it starts from a fresh clone.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+# Notes what it is asked to do. `-m venv` copies it into place, as Python does with itself.
+STAND_IN = """#!/usr/bin/env bash
+case "$*" in
+*version_info*) echo "$VERSION" ;;
+"-I "*) ;;
+*"-m venv "*)
+    mkdir -p "$3/bin" && cp "$0" "$3/bin/python"
+    echo venv >>"$JOURNAL"
+    ;;
+*"-m pip "*)
+    echo pip >>"$JOURNAL"
+    eval "$DURING_PIP"
+    ;;
+*-m*)
+    printf '%s\\n' "$*" >>"$JOURNAL"
+    printf '%s\\n' "$PWD" "${NUMBA_CACHE_DIR-}" "$@" >"$JOURNAL.program"
+    if [[ "$*" == *"-m $FAILING"* ]]; then exit "$EXIT_CODE"; fi
+    ;;
+esac
+"""
+
+
+@dataclass
+class Clone:
+    """A clone with the scripts and the stand-in, and what has been done in it so far."""
+
+    path: Path
+    home: Path
+
+    @property
+    def journal(self) -> Path:
+        return self.home / "journal"
+
+    def start(self, *command: str, **variables: str) -> subprocess.Popen[bytes]:
+        """Start scripts/... from the home directory; `variables` change the environment."""
+        environment = {
+            "PATH": os.environ["PATH"],
+            "HOME": str(self.home),
+            "PYTHON": str(self.home / "python"),
+            "JOURNAL": str(self.journal),
+            "VERSION": "3.12.1",
+            "DURING_PIP": "true",
+            "FAILING": "eulerplateau",
+            "EXIT_CODE": "4",
+        }
+        script, *arguments = command
+        return subprocess.Popen(
+            [str(self.path / "scripts" / script), *arguments],
+            cwd=self.home,
+            env=environment | variables,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def run(self, *command: str, **variables: str) -> tuple[int, list[str]]:
+        """Return the exit code and what was asked of Python in this run."""
+        self.journal.write_text("")
+        code = self.start(*command, **variables).wait(timeout=60)
+        return code, self.journal.read_text().splitlines()
+
+
+SWEEP = "-P -m eulerplateau sweep"
+SET_UP = ["venv", "pip", "pip"]
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Clone:
+    """Return a clone that has not been set up."""
+    path = tmp_path / "a clone"
+    shutil.copytree(ROOT / "scripts", path / "scripts")
+    for name in ("requirements.lock", "pyproject.toml"):
+        shutil.copy(ROOT / name, path)
+    python = tmp_path / "python"
+    python.write_text(STAND_IN)
+    python.chmod(0o755)
+    return Clone(path, tmp_path)
+
+
+@pytest.fixture
+def ready(clone: Clone) -> Clone:
+    """Return a clone that has been set up."""
+    clone.run("sweep")
+    return clone
+
+
+def test_first_start_sets_up_and_passes_everything_on(clone: Clone) -> None:
+    code, asked = clone.run("sweep", "a run.toml", "--set", "x=1 2")
+    assert code == 4
+    assert asked == [*SET_UP, f"{SWEEP} a run.toml --set x=1 2"]
+    directory, _, *arguments = Path(f"{clone.journal}.program").read_text().splitlines()
+    assert directory == str(clone.home)
+    assert arguments == [*SWEEP.split(), "a run.toml", "--set", "x=1 2"]
+
+
+def test_second_start_neither_makes_nor_installs_anything(ready: Clone) -> None:
+    assert ready.run("sweep") == (4, [SWEEP])
+
+
+def test_script_called_through_a_link_finds_its_repository(ready: Clone) -> None:
+    link = ready.path / "scripts" / "link"
+    link.symlink_to("sweep")
+    assert ready.run("link") == (4, [SWEEP])
+
+
+@pytest.mark.parametrize("name", ["requirements.lock", "pyproject.toml"])
+def test_changed_requirements_are_installed_in_place(ready: Clone, name: str) -> None:
+    with (ready.path / name).open("a") as file:
+        file.write("# changed\n")
+    assert ready.run("sweep") == (4, ["pip", "pip", SWEEP])
+    assert ready.run("sweep") == (4, [SWEEP])
+
+
+def test_another_python_gets_an_environment_of_its_own(ready: Clone) -> None:
+    assert ready.run("sweep", VERSION="3.13.0") == (4, [*SET_UP, SWEEP])
+
+
+def test_moved_clone_is_set_up_anew(ready: Clone) -> None:
+    ready.path = ready.path.rename(ready.home / "moved")
+    assert ready.run("sweep") == (4, [*SET_UP, SWEEP])
+
+
+@pytest.mark.parametrize("end", ["exit 1", "kill -KILL $PPID"])
+def test_interrupted_set_up_is_redone_from_nothing(clone: Clone, end: str) -> None:
+    code, asked = clone.run("sweep", DURING_PIP=end)
+    assert code not in {0, 4}
+    assert asked == ["venv", "pip"]
+    (clone.path / ".venv" / "half").touch()
+    assert clone.run("sweep") == (4, [*SET_UP, SWEEP])
+    assert not (clone.path / ".venv" / "half").exists()
+
+
+def test_interrupted_change_is_redone_from_nothing(ready: Clone) -> None:
+    (ready.path / "requirements.lock").write_text("changed")
+    assert ready.run("sweep", DURING_PIP="kill -KILL $PPID")[1] == ["pip"]
+    assert ready.run("sweep") == (4, [*SET_UP, SWEEP])
+
+
+def test_two_first_starts_at_once_set_up_once(clone: Clone) -> None:
+    clone.journal.write_text("")
+    starts = [clone.start("sweep", DURING_PIP="sleep 0.2") for _ in range(2)]
+    assert [start.wait(timeout=60) for start in starts] == [4, 4]
+    assert clone.journal.read_text().splitlines() == [*SET_UP, SWEEP, SWEEP]
+
+
+@pytest.mark.parametrize("version", ["", "2.7.18", "3.10.13", "3.100.1"])
+def test_unsuitable_python_is_refused_and_changes_nothing(
+    ready: Clone, version: str
+) -> None:
+    assert ready.run("sweep", VERSION=version) == (1, [])
+    assert ready.run("sweep") == (4, [SWEEP])
+
+
+def test_without_a_home_caches_stay_in_the_environment(ready: Clone) -> None:
+    ready.run("sweep", HOME="/nonexistent")
+    cache = Path(f"{ready.journal}.program").read_text().splitlines()[1]
+    assert Path(cache).is_relative_to(ready.path / ".venv")
+
+
+@pytest.mark.parametrize("failing", ["ruff check", "ruff format", "mypy", "pytest"])
+def test_every_check_runs_and_any_failure_counts(ready: Clone, failing: str) -> None:
+    code, asked = ready.run("test", "-x", FAILING=failing, EXIT_CODE="5")
+    assert code == 1
+    assert asked == [
+        "-m ruff check",
+        "-m ruff format --check",
+        "-m mypy",
+        "-m pytest -m not slow -x",
+    ]
+
+
+def test_slow_runs_the_slow_tests_only(ready: Clone) -> None:
+    assert ready.run("test", "--slow", "-x") == (0, ["-m pytest -m slow -x"])
+    assert ready.run("test", "--slow", FAILING="pytest", EXIT_CODE="5")[0] == 1
+
+
+@pytest.mark.parametrize("script", ["scripts/sweep", "scripts/test", ".ci/run"])
+def test_commands_are_executable(script: str) -> None:
+    assert os.access(ROOT / script, os.X_OK)

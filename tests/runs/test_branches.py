@@ -1,0 +1,190 @@
+"""`eulerplateau branches`: what it leaves behind, how it ends, what it says."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from eulerplateau.branches.special import BIFURCATION
+from eulerplateau.errors import OutputError, SpecError
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.runs.exploration import SPECIAL_COLUMNS, Exploration, run_branches
+from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.shape_files import read_shape
+from eulerplateau.runs.spec import RunSpec, load_run
+from eulerplateau.runs.table import BranchRow, read_rows
+
+RUN = Path(__file__).parents[2] / "runs" / "elongated.toml"
+# From below the onset to where the planar film is unstable: one special point.
+WINDOW = {"branches.load_min": 620.0, "branches.load_max": 700.0}
+
+
+def window(**more: Any) -> RunSpec:
+    return load_run(RUN, {**WINDOW, **{f"branches.{key}": v for key, v in more.items()}})
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> Exploration:
+    return run_branches(window(special_points=1), tmp_path_factory.mktemp("run") / "out")
+
+
+def test_every_point_has_its_row_and_its_shape(result: Exploration) -> None:
+    rows = read_rows(result.folder / "branches.csv", BranchRow)
+    assert tuple(rows) == result.rows
+    assert [row.step for row in rows] == list(range(len(rows)))
+    assert {row.branch for row in rows} == {0, 1, 2}
+    for row in rows:
+        assert row.converged
+        shape = read_shape(result.folder / shape_name(row.step))
+        assert (shape.step, shape.kL3_alpha, shape.energy) == (
+            row.step, row.kL3_alpha, row.energy
+        )  # fmt: skip
+    series = ElementTree.parse(result.folder / "branches.pvd").getroot()
+    assert len(series.findall(".//DataSet")) == len(rows)
+
+
+def test_special_points_are_rows_too(result: Exploration) -> None:
+    (special,) = read_special(result.folder)
+    assert tuple(special) == SPECIAL_COLUMNS
+    row = result.rows[int(special["step"])]
+    assert row.special == int(special["number"]) == 0
+    assert row.kL3_alpha == float(special["kL3_alpha"])
+    assert float(special["kL3_alpha_error"]) < 1e-8 * row.kL3_alpha
+    assert row.sigma_hat == float(special["sigma_hat"])
+    errors = float(special["sigma_hat_error"]), float(special["kL3_alpha_error"])
+    assert errors[0] / errors[1] == pytest.approx(row.sigma_hat / row.kL3_alpha)
+    assert row.branch == int(special["branch"]) == 0
+    assert special["kind"] == BIFURCATION
+    assert abs(float(special["eigenvalue"])) < 1e-6 * abs(result.rows[0].lowest_eigenvalue)
+    assert {r.origin for r in result.rows if r.branch} == {0}
+
+
+def read_special(folder: Path) -> list[dict[str, str]]:
+    with (folder / "special_points.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_critical_mode_is_in_the_shape_of_its_special_point(
+    result: Exploration, elongated: DiskMesh
+) -> None:
+    """Through the whole film, and out of its plane."""
+    import pyvista
+
+    for row in result.rows:
+        data = pyvista.read(result.folder / shape_name(row.step)).point_data
+        assert ("critical_mode" in data) == (row.special is not None)
+        if row.special is not None:
+            mode = np.asarray(data["critical_mode"])
+            assert mode.shape == (elongated.n_v, 3)
+            assert np.square(mode[:, 2]).sum() > 0.999 * np.square(mode).sum()
+
+
+def test_summary_says_what_was_run(result: Exploration, elongated: DiskMesh) -> None:
+    summary = json.loads((result.folder / "run.json").read_text())
+    assert summary["status"] == "finished"
+    assert summary["totals"]["points"] == len(result.rows)
+    assert summary["totals"]["special"] == len(result.special) == 1
+    assert summary["mesh"]["sha256"] == elongated.digest
+    assert summary["spec"]["branches"]["load_max"] == WINDOW["branches.load_max"]
+
+
+def test_no_special_point_is_an_empty_table(tmp_path: Path) -> None:
+    found = run_branches(window(load_max=650.0), tmp_path / "out")
+    assert {row.branch for row in found.rows} == {0}
+    assert read_special(found.folder) == []
+
+
+@pytest.mark.parametrize("last", [0, 3])
+def test_interrupt_leaves_what_was_found(tmp_path: Path, last: int) -> None:
+    seen = []
+
+    def stop(row: BranchRow) -> None:
+        seen.append(row)
+        if row.step == last:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_branches(window(), tmp_path / "out", stop)
+    folder = tmp_path / "out"
+    assert read_rows(folder / "branches.csv", BranchRow) == seen
+    assert len(seen) == last + 1
+    for row in seen:
+        read_shape(folder / shape_name(row.step))
+    assert json.loads((folder / "run.json").read_text())["status"] == "interrupted"
+    # The next run takes the folder over.
+    again = run_branches(window(special_points=0), folder)
+    assert tuple(read_rows(folder / "branches.csv", BranchRow)) == again.rows
+
+
+def test_window_without_loads_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SpecError) as caught:
+        run_branches(window(load_max=500.0), tmp_path / "out")
+    assert caught.value.key == "branches.load_min"
+    assert not (tmp_path / "out").exists()
+
+
+def test_foreign_folder_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(OutputError):
+        run_branches(window(), tmp_path)
+    assert {file.name for file in tmp_path.iterdir()} == {"thesis.tex"}
+
+
+def command(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    sets = [f"--set={key}={value}" for key, value in WINDOW.items()]
+    sets += ["--out", str(folder)]
+    return subprocess.run(
+        [sys.executable, "-m", "eulerplateau", "branches", str(RUN), *sets, *arguments],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def test_quiet_command_draws_and_says_nothing(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    done = command("--quiet", "--set=branches.special_points=1", folder=folder)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    names = {file.name for file in folder.iterdir()}
+    assert names == {
+        "run.json", "branches.csv", "branches.pvd", "branches.png",
+        "special_points.csv", "shapes",
+    }  # fmt: skip
+
+
+def test_command_reports_what_it_found_and_where(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    more = "--set=branches.special_points=0"
+    done = command("--no-pictures", more, folder=folder)
+    assert done.returncode == 0
+    assert str(folder) in done.stdout
+    assert BIFURCATION in done.stdout
+    assert not (folder / "branches.png").exists()
+
+
+@pytest.mark.parametrize(
+    "setting",
+    [
+        "branches.load_max=1",
+        "branches.special_points=-1",
+        "branches.no_such_key=1",
+        "branches.load_min=[1",
+        "mesh.file=no_such_file.vtp",
+    ],
+)
+def test_bad_settings_end_with_exit_code_2_and_one_line(
+    tmp_path: Path, setting: str
+) -> None:
+    done = command("--quiet", f"--set={setting}", folder=tmp_path / "out")
+    assert done.returncode == 2
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not (tmp_path / "out").exists()

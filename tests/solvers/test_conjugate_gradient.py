@@ -1,0 +1,209 @@
+"""The paper's method against Newton's, and its own promises."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film.area import area
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers import conjugate_gradient, newton
+from eulerplateau.solvers.equilibrium import (
+    LENGTH_TOLERANCE,
+    RESIDUAL_TOLERANCE,
+    Equilibrium,
+    Status,
+)
+from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.start import smooth_kick
+from tests.helpers import equilibria, shapes
+
+SOLVERS = {"newton": newton.solve, "cg": conjugate_gradient.solve}
+
+
+def regular() -> DiskMesh:
+    return shapes.mesh_of(*shapes.hexagon_points(5))
+
+
+def irregular() -> DiskMesh:
+    points, triangles = shapes.disk_points(6, jitter=0.2)
+    return shapes.mesh_of(points * [1.5, 1.0], triangles)
+
+
+def long() -> DiskMesh:
+    points, triangles = shapes.hexagon_points(5)
+    return shapes.mesh_of(points * [2.0, 1.0], triangles)
+
+
+def solve(name: str, mesh: DiskMesh, x: FloatArray, load: float) -> Equilibrium:
+    return SOLVERS[name](make_problem(mesh), x, np.zeros(mesh.n_b), load)
+
+
+# From the plane, through twisted saddles, to folded films.
+CASES = [
+    (regular, 300.0),
+    (regular, 700.0),
+    (irregular, 300.0),
+    (irregular, 900.0),
+    (irregular, 1600.0),
+    (long, 300.0),
+    (long, 1000.0),
+    (long, 2500.0),
+]
+
+
+@pytest.mark.parametrize(("make", "load"), CASES)
+def test_every_solver_reaches_the_same_equilibrium_on_every_case(
+    make: Callable[[], DiskMesh], load: float
+) -> None:
+    mesh = make()
+    start = shapes.crumpled(mesh, 1e-3)
+    found = {name: solve(name, mesh, start, load) for name in SOLVERS}
+    for result in found.values():
+        assert result.status is equilibria.verdict(result.x[mesh.loop])
+        assert result.load == load
+        assert result.residual <= RESIDUAL_TOLERANCE
+        assert result.length_error <= LENGTH_TOLERANCE
+    assert found["cg"].energy == pytest.approx(found["newton"].energy, rel=1e-8)
+    # The energy is quadratic about a minimum: 1e-8 of it is 1e-4 of the shape.
+    gap = equilibria.distance_up_to_motion(found["cg"].x, found["newton"].x)
+    assert gap < 1e-4
+    tension = np.abs(found["newton"].multipliers).max()
+    np.testing.assert_allclose(
+        found["cg"].multipliers, found["newton"].multipliers, atol=1e-2 * tension
+    )
+
+
+# Before the plane buckles, a two-lobed film, a longer one: loops of even edges, for which
+# sliding along themselves changes nothing.
+@pytest.mark.parametrize("plane", [False, True])
+@pytest.mark.parametrize("load", [1000.0, 1700.0])
+def test_solvers_reach_the_same_soap_film(load: float, plane: bool) -> None:
+    mesh = shapes.mesh_of(*shapes.disk_points(6))
+    problem = make_problem(mesh, "area", plane=plane)
+    start = shapes.crumpled(mesh, 1e-3) * [1.2, 0.8, 1.0]
+    exact, cg = (
+        solver(problem, start, np.zeros(mesh.n_b), load) for solver in SOLVERS.values()
+    )
+    for found in (cg, exact):
+        assert found.status is equilibria.verdict(found.x[mesh.loop])
+        assert found.residual <= RESIDUAL_TOLERANCE
+        assert found.length_error <= LENGTH_TOLERANCE
+        triangles = mesh.triangles if found.triangles is None else found.triangles
+        assert area(mesh).retiled(triangles).sides(found.x).smallest_angle > 12
+    assert cg.energy == pytest.approx(exact.energy, rel=1e-8)
+
+
+@pytest.mark.parametrize("plane", [False, True])
+def test_uneven_loop_of_a_soap_film_ends_where_its_sliding_was_left(plane: bool) -> None:
+    """Sliding costs what the edges differ by, an error of the mesh: it is not searched."""
+    mesh = irregular()
+    problem = make_problem(mesh, "area", plane=plane)
+    start = shapes.crumpled(mesh, 1e-3)
+    exact, cg = (
+        solver(problem, start, np.zeros(mesh.n_b), 1000.0) for solver in SOLVERS.values()
+    )
+    assert cg.converged
+    assert cg.energy == pytest.approx(exact.energy, rel=1e-6)
+    gap = equilibria.distance_up_to_motion(cg.x[mesh.loop], exact.x[mesh.loop])
+    assert gap < 1e-3
+
+
+def test_accepted_state_is_what_its_record_says(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    found = solve("cg", oval, shapes.crumpled(oval, 1e-3), 900.0)
+    film = oval_problem.film_energy(found.x, 900.0)[0]
+    bending = oval_problem.bending_energy(found.x)[0]
+    assert found.energy == pytest.approx(film + bending, rel=1e-14)
+    assert found.residual == oval_problem.residual(found.x, found.multipliers, 900.0)
+    assert found.length_error == oval_problem.length_error(found.x)
+    assert (found.n_unstable, found.lowest_eigenvalue) == (None, None)
+    assert found.iterations > 0
+    assert found.seconds > 0
+
+
+def test_kick_makes_it_leave_a_saddle(oval: DiskMesh, oval_problem: Problem) -> None:
+    """From the planar equilibrium beyond the onset, in balance to rounding."""
+    load = 1000.0
+    flat = equilibria.planar(oval_problem, oval, [300.0, load])[-1]
+    x = oval_problem.condensed.extend(flat.x)
+    saddle = oval_problem.equilibrium(x, flat.multipliers, load, Status.CONVERGED)
+    assert saddle.residual < RESIDUAL_TOLERANCE
+    found = conjugate_gradient.solve(oval_problem, x, flat.multipliers, load)
+    assert found.status is Status.CONVERGED
+    assert found.energy < saddle.energy * (1 - 1e-4)
+    assert np.ptp(found.x[:, 2]) > 0.01
+    lowest = newton.solve(oval_problem, found.x, found.multipliers, load)
+    assert found.energy == pytest.approx(lowest.energy, rel=1e-8)
+
+
+def test_restart_from_newtons_minimum_stays_there(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    start = solve("newton", oval, shapes.crumpled(oval, 1e-3), 900.0)
+    found = conjugate_gradient.solve(oval_problem, start.x, start.multipliers, 900.0)
+    assert found.status is Status.CONVERGED
+    assert found.energy == pytest.approx(start.energy, rel=1e-8)
+
+
+@pytest.mark.parametrize("limit", [1, 50])
+def test_iteration_limit_is_a_status_and_not_an_exception(
+    oval: DiskMesh, oval_problem: Problem, limit: int
+) -> None:
+    found = conjugate_gradient.solve(
+        oval_problem,
+        shapes.crumpled(oval, 1e-3),
+        np.zeros(oval.n_b),
+        900.0,
+        max_iterations=limit,
+    )
+    assert found.status is Status.ITERATION_LIMIT
+    assert not found.converged
+    assert found.iterations >= limit
+    assert np.isfinite(found.x).all()
+
+
+@pytest.mark.parametrize("bad", [np.nan, 1e200])
+def test_overflow_is_a_status_and_not_an_exception(
+    oval: DiskMesh, oval_problem: Problem, bad: float
+) -> None:
+    x = oval.x.copy()
+    x[3, 2] = bad
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = conjugate_gradient.solve(oval_problem, x, np.zeros(oval.n_b), 900.0)
+    assert found.status is Status.NOT_FINITE
+
+
+def test_two_solves_are_the_same_bit_for_bit(oval: DiskMesh) -> None:
+    start = shapes.crumpled(oval, 1e-3)
+    one, two = (solve("cg", oval, start, 900.0) for _ in range(2))
+    np.testing.assert_array_equal(one.x, two.x)
+    assert one.iterations == two.iterations
+
+
+def test_kick_is_transverse_smooth_and_a_thousandth_of_the_length(oval: DiskMesh) -> None:
+    turn = shapes.rotation()
+    x = oval.x @ turn.T
+    kick = smooth_kick(x[oval.loop], x, np.random.default_rng(0), 2)
+    assert np.linalg.norm(kick, axis=1).max() == pytest.approx(1e-3)
+    normal = turn @ [0.0, 0.0, 1.0]
+    np.testing.assert_allclose(np.cross(kick, normal), 0, atol=1e-15)
+    # Smooth: two kicks agree in nothing, but neighbours differ by little.
+    i, j = oval.edges.T
+    assert np.linalg.norm(kick[i] - kick[j], axis=1).max() < 0.7e-3
+    again = smooth_kick(x[oval.loop], x, np.random.default_rng(1), 2)
+    assert np.abs(again - kick).max() > 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("load", [300.0, 720.0, 1000.0])
+def test_solvers_agree_on_the_papers_mesh(elongated: DiskMesh, load: float) -> None:
+    start = shapes.crumpled(elongated, 1e-3)
+    cg, exact = (solve(name, elongated, start, load) for name in ("cg", "newton"))
+    assert cg.status is Status.CONVERGED
+    assert cg.energy == pytest.approx(exact.energy, rel=1e-8)
+    assert equilibria.distance_up_to_motion(cg.x, exact.x) < 1e-3

@@ -1,0 +1,119 @@
+"""The problem as a solver sees it, and the energies of disks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers.equilibrium import Status
+from eulerplateau.solvers.problem import Problem, make_problem
+from tests.helpers import equilibria, shapes, twins
+
+LOAD = 700.0
+RNG = np.random.default_rng(4)
+
+
+def test_energies_are_those_of_the_twins(oval: DiskMesh, oval_problem: Problem) -> None:
+    x = shapes.crumpled(oval, 0.02)
+    record = oval_problem.equilibrium(x, np.zeros(oval.n_b), LOAD, Status.CONVERGED)
+    film, bending = twins.film_energy(oval, x, LOAD), twins.bending_energy(oval, x)
+    assert record.film_energy == pytest.approx(film, rel=1e-12)
+    assert record.bending_energy == pytest.approx(bending, rel=1e-12)
+    assert record.energy == record.film_energy + record.bending_energy
+
+
+def test_residual_is_the_imbalance_over_the_largest_of_the_three_forces(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    """With the gradients of the twins, by central differences of quartic polynomials."""
+    x, lam = shapes.crumpled(oval, 0.02), 100 * RNG.standard_normal(oval.n_b)
+    terms = (
+        lambda y: twins.bending_energy(oval, y),
+        lambda y: twins.film_energy(oval, y, LOAD),
+        lambda y: float(lam @ twins.constraint(oval, y)),
+    )
+    forces = []
+    for term in terms:
+        force = np.empty_like(x)
+        for index in np.ndindex(*x.shape):
+            step = np.zeros_like(x)
+            step[index] = 1e-3  # exact for a quadratic but for rounding
+            force[index] = (term(x + step) - term(x - step)) / 2e-3
+        forces.append(force)
+    largest = max(np.abs(force).max() for force in forces)
+    expected = np.abs(np.sum(forces, axis=0)).max() / largest
+    assert oval_problem.residual(x, lam, LOAD) == pytest.approx(expected, rel=1e-9)
+
+
+def test_residual_vanishes_at_an_equilibrium_and_says_by_how_much_one_is_missed(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    model = equilibria.planar(oval_problem, oval, [300.0, LOAD])[-1]
+    x = oval_problem.condensed.extend(model.x)
+    assert oval_problem.residual(x, model.multipliers, LOAD) < 1e-10
+    direction = RNG.standard_normal(x.shape)
+    once, twice = (
+        oval_problem.residual(x + size * direction, model.multipliers, LOAD)
+        for size in (1e-8, 2e-8)
+    )
+    assert twice == pytest.approx(2 * once, rel=1e-2)
+
+
+def test_residual_does_not_depend_on_the_unit_of_energy(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    """At load 0 the film is slack: bending and tension alone, both linear in x."""
+    x, lam = shapes.crumpled(oval, 0.02), 100 * RNG.standard_normal(oval.n_b)
+    assert oval_problem.residual(3 * x, lam, LOAD) == pytest.approx(
+        oval_problem.residual(x, lam, LOAD), rel=1e-10
+    )
+
+
+def test_rigid_motions_change_the_energy_by_less_than_1e_12_of_itself(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    model = equilibria.planar(oval_problem, oval, [300.0, LOAD])[-1]
+    x = oval_problem.condensed.extend(model.x)
+    here = oval_problem.equilibrium(x, model.multipliers, LOAD, Status.CONVERGED)
+    moved = x @ shapes.rotation().T + [0.3, -0.2, 0.7]
+    there = oval_problem.equilibrium(moved, model.multipliers, LOAD, Status.CONVERGED)
+    assert abs(there.energy / here.energy - 1) < 1e-12
+    assert there.residual < 1e-10
+
+
+def test_a_length_error_is_the_largest_strain_of_the_loop(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    assert oval_problem.length_error(oval.x) < 1e-14
+    assert oval_problem.length_error(1.25 * oval.x) == pytest.approx(0.25, rel=1e-12)
+
+
+def test_energy_of_a_disk_converges_to_sigma_over_4_pi_plus_4_pi_squared() -> None:
+    """In units alpha/L, at second order in the length of the loop's edges."""
+    sigma_hat, sizes, errors = 1234.0, [], []
+    for rings in (6, 12, 24):
+        mesh = shapes.mesh_of(*shapes.disk_points(rings))
+        problem = make_problem(mesh, "dirichlet")
+        x = problem.condensed.extend(mesh.x[mesh.loop])
+        np.testing.assert_allclose(x, mesh.x, atol=1e-13)  # already relaxed
+        energy = problem.film_energy(x, sigma_hat)[0] + problem.bending_energy(x)[0]
+        sizes.append(1 / mesh.n_b)
+        errors.append(energy - (sigma_hat / (4 * np.pi) + 4 * np.pi**2))
+    assert shapes.fitted_order(sizes, errors) == pytest.approx(2.0, abs=0.05)
+
+
+def test_spring_film_of_an_unstructured_disk_has_that_energy_to_a_percent(
+    hexagon: DiskMesh,
+) -> None:
+    """2 sqrt 3 k is exact on equilateral triangles; Gmsh's are equilateral to a percent.
+
+    Film of the flat mesh, without the loop's edges: 2 sqrt 3 k area - k sum_loop s^2 / 2.
+    """
+    area = np.cross(
+        hexagon.x[hexagon.triangles[:, 1]] - hexagon.x[hexagon.triangles[:, 0]],
+        hexagon.x[hexagon.triangles[:, 2]] - hexagon.x[hexagon.triangles[:, 0]],
+    )[:, 2]
+    expected = np.sqrt(12) * area.sum() / 2 - (hexagon.rest_lengths**2).sum() / 2
+    energy = make_problem(hexagon).film_energy(hexagon.x, 1.0)[0]
+    assert energy == pytest.approx(expected, rel=0.01)

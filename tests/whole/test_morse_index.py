@@ -1,0 +1,108 @@
+"""The Morse index of the condensed problem against that of the whole film."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.motions import rigid_motions
+from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.solvers import newton
+from eulerplateau.solvers.condensed import loop_energy
+from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.spectrum import stability
+from tests.helpers import equilibria, shapes
+
+
+def whole_film_index(
+    problem: Problem, x: FloatArray, multipliers: FloatArray, load: float
+) -> int:
+    """Negative eigenvalues of the Lagrangian's Hessian over all vertices, interior too.
+
+    Built from the gradients alone, column by column: they are linear in x, so their
+    difference is the Hessian. By Haynsworth's theorem it has as many negative eigenvalues
+    as the condensed one, for what is eliminated is positive definite.
+    """
+    size = x.size
+
+    def force(y: FloatArray) -> FloatArray:
+        parts = (problem.film_energy(y, load)[1], problem.bending_energy(y)[1])
+        return (parts[0] + parts[1] + problem.tension_force(y, multipliers)).ravel()
+
+    hessian = np.stack([force(row.reshape(x.shape)) for row in np.eye(size)])
+    b = problem.loop_vertices
+    rows = []
+    for v in range(len(b)):
+        row = np.zeros_like(x)
+        after = b[(v + 1) % len(b)]
+        row[after], row[b[v]] = x[after] - x[b[v]], x[b[v]] - x[after]
+        rows.append(row.ravel())
+    normals = np.column_stack([*rows, rigid_motions(x)])
+    tangent = np.linalg.qr(normals, mode="complete")[0][:, normals.shape[1] :]
+    values = np.linalg.eigvalsh(tangent.T @ hessian @ tangent)
+    assert np.abs(values).min() > 1e-9 * values[-1]
+    return int((values < 0).sum())
+
+
+@pytest.fixture(scope="module")
+def long_lattice() -> DiskMesh:
+    """A hexagonal lattice stretched to twice its length: its modes come one by one."""
+    points, triangles = shapes.hexagon_points(5)
+    return shapes.mesh_of(points * [2.0, 1.0], triangles)
+
+
+def test_morse_index_of_planar_films_is_that_of_the_whole_film(
+    long_lattice: DiskMesh,
+) -> None:
+    """Along the planar branch: stable, then with one unstable mode, then with two."""
+    problem, met = make_problem(long_lattice), []
+    loads = [100, 250, 400, 550, 700, 850, 1000]
+    models = equilibria.planar(problem, long_lattice, loads)
+    for load, model in zip(loads, models, strict=True):
+        found = stability(model)
+        x = problem.condensed.extend(model.x)
+        assert np.abs(x[:, 2]).max() < 1e-12
+        assert problem.residual(x, model.multipliers, load) < 1e-9
+        assert found.n_neutral == 0
+        assert found.n_unstable == whole_film_index(problem, x, model.multipliers, load)
+        met.append(found.n_unstable)
+    assert met == sorted(met)
+    assert set(met) == {0, 1, 2}
+
+
+def test_morse_index_of_a_regular_hexagon_jumps_by_two_and_that_of_its_saddle_is_zero() -> (
+    None
+):
+    """Its sixfold symmetry makes the twofold modes a pair."""
+    mesh = shapes.mesh_of(*shapes.hexagon_points(5))
+    problem = make_problem(mesh)
+    loads = [100.0, 500.0, 900.0]
+    indices = []
+    for load, model in zip(loads, equilibria.planar(problem, mesh, loads), strict=True):
+        x = problem.condensed.extend(model.x)
+        indices.append(stability(model).n_unstable)
+        assert indices[-1] == whole_film_index(problem, x, model.multipliers, load)
+    assert indices == [0, 0, 2]
+    saddle = newton.solve(problem, mesh.x, np.zeros(mesh.n_b), loads[-1])
+    assert np.ptp(saddle.x[:, 2]) > 0.01
+    assert saddle.n_unstable == 0
+
+
+def test_morse_index_of_films_in_space_is_that_of_the_whole_film(
+    oval: DiskMesh, oval_problem: Problem
+) -> None:
+    """A stable film followed down in load, where it turns unstable once and again."""
+    load, met = 1200.0, []
+    stable = newton.solve(
+        oval_problem, shapes.crumpled(oval, 1e-3), np.zeros(oval.n_b), load
+    )
+    around = stable.x[oval.loop]
+    while load >= 500.0:
+        model = equilibria.critical_point(loop_energy(oval_problem, load), around)
+        x = oval_problem.condensed.extend(model.x)
+        met.append(stability(model).n_unstable)
+        assert met[-1] == whole_film_index(oval_problem, x, model.multipliers, load)
+        around, load = model.x, load - 100.0
+    assert np.ptp(around[:, 2]) > 0.1
+    assert set(met) == {0, 1, 2}

@@ -1,8 +1,27 @@
-from .exploration import Limits as Limits, Visit as Visit, explore as explore
+from .continuation import follow as follow
+from .exploration import (
+    DiagramPoint as DiagramPoint,
+    Limits as Limits,
+    explore_from as explore_from,
+)
+from .family import Family as Family
+from .films import (
+    FilmFamily as FilmFamily,
+    FilmPoint as FilmPoint,
+    equilibrium as equilibrium,
+    explore as explore,
+    film_point as film_point,
+    first_equilibrium as first_equilibrium,
+)
 from .point import (
     BranchPoint as BranchPoint,
-    Settings as Settings,
+    StepControl as StepControl,
     first_point as first_point,
 )
 from .scaling import PowerLaw as PowerLaw, fit_power as fit_power
-from .special import BIFURCATION as BIFURCATION, FOLD as FOLD, SpecialPoint as SpecialPoint
+from .special import (
+    BIFURCATION as BIFURCATION,
+    FOLD as FOLD,
+    SpecialPoint as SpecialPoint,
+    branches_from as branches_from,
+)

@@ -1,4 +1,4 @@
-"""A stretch of a branch between two points, and where on it something vanishes."""
+"""A interval of a branch between two points, and where on it something vanishes."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from eulerplateau.branches.point import NOISE, BranchPoint, Settings, along, correct
+from eulerplateau.branches.point import NOISE, BranchPoint, StepControl, along, correct
 
 _PRECISION = 1e-14
-_LOAD_ROUNDING = 4 * float(np.finfo(np.float64).eps)
+_ROUNDING = 4 * float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
-class Stretch:
-    """A stretch of branch between two neighbouring points."""
+class Interval:
+    """A interval of branch between two neighbouring points."""
 
     before: BranchPoint
     after: BranchPoint
-    settings: Settings
+    control: StepControl
 
     @property
     def length(self) -> float:
@@ -42,7 +42,7 @@ class Stretch:
         a guess between known ones: at a bifurcation a point's own direction means nothing,
         and a long step could land on the other branch.
         """
-        reach = along(self.before, self.after, self.settings)
+        reach = along(self.before, self.after, self.control)
         points = {0.0: self.before, reach: self.after}
 
         def value(step: float) -> float:
@@ -74,30 +74,30 @@ class Stretch:
         low, high = points[below], points[above]
         part = (step - below) / (above - below)
         guess = low.x + part * (high.x - low.x)
-        load = low.load + part * (high.load - low.load)
+        value = low.value + part * (high.value - low.value)
         found = correct(
-            self.before.problem,
+            self.before.family,
             guess,
-            load,
+            value,
             self.before.direction,
-            self.settings,
+            self.control,
             (NOISE, 0.0),
         )
         if found is None:
             raise ArithmeticError
         return replace(found, arclength=self.before.arclength + step)
 
-    def load_error(self, point: BranchPoint, index: int) -> float:
-        """Return what rounding in an eigenvalue can have moved the load of its zero by."""
+    def error(self, point: BranchPoint, index: int) -> float:
+        """Return what rounding in an eigenvalue can have moved its zero by."""
         doubt = abs(point.stability.eigenvalues[index]) + point.stability.error_bound
         arclength = doubt * self.length / max(self.rise(index), doubt)
-        # At a fold the load is stationary, elsewhere it changes with the arclength.
-        return float(arclength * abs(point.direction.load) + _LOAD_ROUNDING * point.load)
+        # At a fold the parameter is stationary, elsewhere it changes with the arclength.
+        return float(arclength * abs(point.direction.rate) + _ROUNDING * point.value)
 
 
-def load_rate(level: float, point: BranchPoint) -> float:
-    """Return how fast the load rises along the branch, as zero where below `level`."""
-    rate = point.direction.load
+def parameter_rate(level: float, point: BranchPoint) -> float:
+    """Return how fast the parameter rises along the branch, as zero where below `level`."""
+    rate = point.direction.rate
     return 0.0 if abs(rate) <= level else rate
 
 

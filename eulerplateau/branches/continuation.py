@@ -14,16 +14,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+from eulerplateau.branches.family import Family
 from eulerplateau.branches.point import (
     BranchPoint,
     Direction,
-    Settings,
+    StepControl,
     coefficients_of,
     correct,
     inner,
     make_direction,
 )
-from eulerplateau.solvers import Problem, loop_energy
 
 _EASY = 4  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
@@ -32,7 +32,7 @@ _LEAST_LEAP = 1e-4  # arclength below which a leap is none, but a branch that tu
 
 def follow(
     start: BranchPoint,
-    settings: Settings,
+    control: StepControl,
     stop: Callable[[BranchPoint], bool] = lambda point: False,
     leaps: Callable[[BranchPoint, BranchPoint], bool] = lambda before, after: False,
 ) -> Iterator[BranchPoint]:
@@ -41,39 +41,38 @@ def follow(
     Steps between points of which `leaps` is true are shortened. Ends early where no step,
     however short, can be corrected.
     """
-    point, step = start, settings.first_step
-    low, high = settings.load_range
-    for _ in range(settings.max_points):
+    point, step = start, control.first_step
+    low, high = control.window
+    for _ in range(control.max_points):
         after = None
         while after is None:
-            after = advance(point, step, settings)
+            after = advance(point, step, control)
             if after is None or (step > _LEAST_LEAP and leaps(point, after)):
                 after, step = None, 0.5 * step
-                if step < settings.smallest_step:
+                if step < control.smallest_step:
                     return
-        point = recentred(after, settings)
+        point = recentred(after, control)
         yield point
-        if stop(point) or not low <= point.load <= high:
+        if stop(point) or not low <= point.value <= high:
             return
         if after.corrections <= _EASY:
-            step = min(1.5 * step, settings.largest_step)
+            step = min(1.5 * step, control.largest_step)
 
 
-def advance(point: BranchPoint, step: float, settings: Settings) -> BranchPoint | None:
+def advance(point: BranchPoint, step: float, control: StepControl) -> BranchPoint | None:
     """Return the branch point at arclength `step` from `point`; None if not corrected."""
     guess = point.x + step * point.direction.displacement
-    load = point.load + step * point.direction.load
-    problem = point.problem
-    after = correct(problem, guess, load, point.direction, settings)
+    value = point.value + step * point.direction.rate
+    after = correct(point.family, guess, value, point.direction, control)
     if after is None:
         return None
     # A step that turns sharply has landed on a branch that crosses this one.
-    before = _kept(point, after, settings)
-    ahead = inner(problem, before, after.direction, settings)
+    before = _kept(point, after, control)
+    ahead = inner(after.model, before, after.direction, control)
     return None if ahead < _STRAIGHT else replace(after, arclength=point.arclength + step)
 
 
-def _kept(point: BranchPoint, after: BranchPoint, settings: Settings) -> Direction:
+def _kept(point: BranchPoint, after: BranchPoint, control: StepControl) -> Direction:
     """Return the direction at `point`, as far as its motions are still free at `after`.
 
     A round loop's sliding is its rotation; once it is not it is taken out (motions.py).
@@ -82,24 +81,24 @@ def _kept(point: BranchPoint, after: BranchPoint, settings: Settings) -> Directi
     if len(point.model.gradient) == len(model.gradient):
         return point.direction
     coefficients = coefficients_of(model, point.direction.displacement)
-    return make_direction(model, coefficients, point.direction.load, settings)
+    return make_direction(model, coefficients, point.direction.rate, control)
 
 
-def recentred(point: BranchPoint, settings: Settings) -> BranchPoint:
-    """Return the point in a problem made anew at its film, if the film has turned."""
-    if loop_energy(point.problem, point.load).holds(point.x):
+def recentred(point: BranchPoint, control: StepControl) -> BranchPoint:
+    """Return the point in a family made anew at its loop, if the film has turned."""
+    if point.energy.holds(point.x):
         return point
-    return _anew(point, point.problem.near(point.film), settings)
+    return _anew(point, point.family.near(point.x), control)
 
 
-def freed(point: BranchPoint, settings: Settings) -> BranchPoint:
+def released(point: BranchPoint, control: StepControl) -> BranchPoint:
     """Return the point with its soap film a minimal surface, where that is curved."""
-    return _anew(point, point.problem.freed(point.film), settings)
+    return _anew(point, point.family.released(point.x), control)
 
 
-def _anew(point: BranchPoint, problem: Problem, settings: Settings) -> BranchPoint:
-    """Return the point in another problem; itself if it is not found there."""
-    if problem is point.problem:
+def _anew(point: BranchPoint, family: Family, control: StepControl) -> BranchPoint:
+    """Return the point in another family; itself if it is not found there."""
+    if family is point.family:
         return point
-    found = correct(problem, point.x, point.load, point.direction, settings)
+    found = correct(family, point.x, point.value, point.direction, control)
     return point if found is None else replace(found, arclength=point.arclength)

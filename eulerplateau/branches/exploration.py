@@ -9,13 +9,13 @@ from functools import partial
 from itertools import count
 
 from eulerplateau.branches.continuation import follow
-from eulerplateau.branches.point import BranchPoint, Settings
+from eulerplateau.branches.point import BranchPoint, StepControl
 from eulerplateau.branches.special import SpecialPoint, branches_from, leaps, special_points
 from eulerplateau.branches.symmetry import loop_distance
 
-# Two special points are one if their loads agree to this (relative) and their loops to
+# Two special points are one if their values agree to this (relative) and their loops to
 # this (in L): far above the precision of either, far below what tells branches apart.
-_SAME_LOAD = 1e-6
+_SAME_VALUE = 1e-6
 _SAME_LOOP = 1e-3
 
 
@@ -36,7 +36,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Visit:
+class DiagramPoint:
     """A point of a branch; `special` is set where it is a fold or a bifurcation.
 
     Attributes
@@ -64,7 +64,9 @@ class _Lead:
     origin: int | None = field(compare=False)
 
 
-def explore(start: BranchPoint, settings: Settings, limits: Limits) -> Iterator[Visit]:
+def explore_from(
+    start: BranchPoint, control: StepControl, limits: Limits
+) -> Iterator[DiagramPoint]:
     """Yield the points of the branch through `start`, then of those that leave it."""
     order = count()
     leads = [_Lead(0, next(order), start, None)]
@@ -73,38 +75,38 @@ def explore(start: BranchPoint, settings: Settings, limits: Limits) -> Iterator[
         if not leads:
             return
         lead = heapq.heappop(leads)
-        for visit in _trace(lead, branch, settings, limits, found):
-            yield visit
-            special = visit.special
-            if special is None or visit.known or len(found) > limits.special_points:
+        for visited in _trace(lead, branch, control, limits, found):
+            yield visited
+            special = visited.special
+            if special is None or visited.known or len(found) > limits.special_points:
                 continue
-            for first in branches_from(special, settings):
+            for first in branches_from(special, control):
                 heapq.heappush(
-                    leads, _Lead(special.n_unstable, next(order), first, visit.number)
+                    leads, _Lead(special.n_unstable, next(order), first, visited.number)
                 )
 
 
 def _trace(
     lead: _Lead,
     branch: int,
-    settings: Settings,
+    control: StepControl,
     limits: Limits,
     found: list[SpecialPoint],
-) -> Iterator[Visit]:
+) -> Iterator[DiagramPoint]:
     """Yield one branch; special points not met before are added to `found`."""
-    yield Visit(branch, lead.origin, lead.start)
+    yield DiagramPoint(branch, lead.origin, lead.start)
     before = lead.start
-    leap = partial(leaps, settings=settings)
-    for after in follow(lead.start, settings, limits.stop, leap):
-        for special in special_points(before, after, settings):
+    leap = partial(leaps, control=control)
+    for after in follow(lead.start, control, limits.stop, leap):
+        for special in special_points(before, after, control):
             number = _number(special, found)
             known = number < len(found)
             if not known:
                 found.append(special)
-            yield Visit(branch, lead.origin, special.point, special, number, known)
+            yield DiagramPoint(branch, lead.origin, special.point, special, number, known)
             if special.arrived:
                 return
-        yield Visit(branch, lead.origin, after)
+        yield DiagramPoint(branch, lead.origin, after)
         if after.stability.n_unstable > limits.unstable_modes:
             return
         # Where rounding hides an eigenvalue's sign, the next point decides.
@@ -115,7 +117,7 @@ def _trace(
 def _number(special: SpecialPoint, found: list[SpecialPoint]) -> int:
     """Return the number of a special point, the next free one if it is new."""
     for number, other in enumerate(found):
-        near = abs(special.point.load / other.point.load - 1) < _SAME_LOAD
+        near = abs(special.point.value / other.point.value - 1) < _SAME_VALUE
         if near and loop_distance(special.point.x, other.point.x) < _SAME_LOOP:
             return number
     return len(found)

@@ -8,13 +8,12 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import project_lengths
+from eulerplateau.branches.family import Family
+from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import (
     RESIDUAL_TOLERANCE,
-    Problem,
     Stability,
     TangentModel,
-    loop_energy,
     stability,
     tangent_model,
 )
@@ -24,101 +23,111 @@ NOISE = 1e-10  # relative singular value below which forces are rounding
 
 
 @dataclass(frozen=True)
-class Settings:
+class StepControl:
     """How a branch is followed.
 
     Attributes
     ----------
-    load_range : the window of loads; a branch ends where it leaves it
-    load_unit : float
-        A change of the load by this much is as long as a displacement of 1 L (r.m.s.).
+    window : the parameter's range; a branch ends where it leaves it
+    unit : float
+        A change of the parameter by this much is as long as a displacement of 1 L (r.m.s.).
     first_step, largest_step, smallest_step : arclengths
     max_points : int, per branch
+    least : float
+        Values of the parameter down to this one, included, do not exist.
     """
 
-    load_range: tuple[float, float]
-    load_unit: float
+    window: tuple[float, float]
+    unit: float
     first_step: float = 5e-3
     largest_step: float = 0.03
     smallest_step: float = 1e-9
     max_points: int = 400
+    least: float = 0.0
 
 
 @dataclass(frozen=True)
 class Direction:
-    """A direction of a branch: displacement (n_b, 3) and load rate, of unit arclength."""
+    """A direction of a branch, of unit arclength.
+
+    Attributes
+    ----------
+    displacement : (n, d) float, of the loop
+    rate : float, of the parameter
+    """
 
     displacement: FloatArray
-    load: float
+    rate: float
 
     def reversed(self) -> Direction:
         """Return the opposite direction."""
-        return Direction(-self.displacement, -self.load)
+        return Direction(-self.displacement, -self.rate)
 
 
 @dataclass(frozen=True)
 class BranchPoint:
     """An equilibrium on a branch, the branch's direction there, and its stability.
 
-    `problem` is the one it solves: a soap film's is made anew where the film has turned.
+    Attributes
+    ----------
+    family : the energies it belongs to; made anew where a soap film has turned
+    value : float, of the family's parameter
     """
 
-    problem: Problem
+    family: Family
     model: TangentModel
-    load: float
+    value: float
     direction: Direction
     arclength: float
     corrections: int
 
     @property
     def x(self) -> FloatArray:
-        """Loop positions (n_b, 3)."""
+        """Loop positions (n, d)."""
         return self.model.x
+
+    @property
+    def energy(self) -> LoopEnergy:
+        """The energy of which it is an equilibrium."""
+        return self.family.energy(self.value)
 
     @property
     def stability(self) -> Stability:
         """Spectrum of the second variation."""
         return stability(self.model)
 
-    @property
-    def film(self) -> FloatArray:
-        """The film (n_v, 3) on the loop."""
-        return self.problem.condensed.extend(self.x)
-
-    def displacement(self, moved: FloatArray) -> FloatArray:
-        """Return how the film (n_v, 3) follows a displacement of the loop (n_b, 3)."""
-        return self.problem.condensed.displacement(self.x, moved)
-
 
 def first_point(
-    problem: Problem, x_loop: FloatArray, load: float, settings: Settings
+    family: Family, x: FloatArray, value: float, control: StepControl
 ) -> BranchPoint:
-    """Return the branch point at an equilibrium (n_b, 3), heading for higher loads."""
-    model = tangent_model(loop_energy(problem, load), x_loop)
-    upwards = Direction(np.zeros_like(x_loop), settings.load_unit)
-    direction = branch_direction(problem, model, upwards, settings)
-    return BranchPoint(problem, model, load, direction, 0.0, 0)
+    """Return the branch point at an equilibrium x (n, d), heading for higher values."""
+    energy = family.energy(value)
+    model = tangent_model(energy, x)
+    upwards = Direction(np.zeros_like(x), control.unit)
+    slope = parameter_slope(family, energy, model)
+    direction = branch_direction(model, slope, upwards, control)
+    return BranchPoint(family, model, value, direction, 0.0, 0)
 
 
-def along(point: BranchPoint, other: BranchPoint, settings: Settings) -> float:
+def along(point: BranchPoint, other: BranchPoint, control: StepControl) -> float:
     """Return how far `other` lies from `point` along the branch's direction there."""
-    way = Direction(other.x - point.x, other.load - point.load)
-    return inner(point.problem, point.direction, way, settings)
+    way = Direction(other.x - point.x, other.value - point.value)
+    return inner(point.model, point.direction, way, control)
 
 
-def inner(problem: Problem, a: Direction, b: Direction, settings: Settings) -> float:
+def inner(model: TangentModel, a: Direction, b: Direction, control: StepControl) -> float:
     """Return the product of two directions in which arclength is measured."""
     product = np.sum(a.displacement * b.displacement, axis=1)
-    load = a.load * b.load / settings.load_unit**2
-    return float(problem.loop.mean_lengths @ product) + load
+    rate = a.rate * b.rate / control.unit**2
+    return float(model.weights @ product) + rate
 
 
 def correct(
-    problem: Problem,
+    family: Family,
     guess: FloatArray,
-    load: float,
+    value: float,
     direction: Direction,
-    settings: Settings,
+    control: StepControl,
     attempts: tuple[float, ...] = (0.0, NOISE),
 ) -> BranchPoint | None:
     """Return the equilibrium in the hyperplane through the guess normal to `direction`.
@@ -126,18 +135,18 @@ def correct(
     Each of the attempts keeps still along singular vectors of relative value below it.
     """
     for smallest in attempts:
-        found = _correct(problem, guess, load, direction, settings, smallest)
+        found = _correct(family, guess, value, direction, control, smallest)
         if found is not None:
             return found
     return None
 
 
 def _correct(
-    problem: Problem,
+    family: Family,
     guess: FloatArray,
-    load: float,
+    value: float,
     direction: Direction,
-    settings: Settings,
+    control: StepControl,
     smallest: float,
 ) -> BranchPoint | None:
     """Correct by Newton's method, still along singular vectors below `smallest`.
@@ -145,33 +154,33 @@ def _correct(
     Close to a bifurcation the Hessian hardly resists its critical mode: along it, rounding
     in the forces becomes motion, which a second attempt leaves out.
     """
-    x = project_lengths(problem.loop, guess)
-    best = np.inf
-    guess_load = load
+    constraint = family.energy(value).constraint
+    x = constraint.project(guess)
+    best, guessed = np.inf, value
     for corrections in range(_CORRECTIONS):
-        if x is None or load <= 0 or not np.isfinite(load):
+        if x is None or value <= control.least or not np.isfinite(value):
             return None
         try:
-            model = tangent_model(loop_energy(problem, load), x)
+            energy = family.energy(value)
+            model = tangent_model(energy, x)
+            slope = parameter_slope(family, energy, model)
         except LinAlgError:  # no film on this loop
             return None
-        normal = coefficients_of(model, direction.displacement)
-        way = Direction(x - guess, load - guess_load)
-        off = inner(problem, direction, way, settings)
+        off = inner(model, direction, Direction(x - guess, value - guessed), control)
         settled = model.residual <= max(4 * model.rounding, 1e-13)
         stuck = model.residual < RESIDUAL_TOLERANCE**1.5 and model.residual > 0.5 * best
         if settled or stuck:
-            tangent = branch_direction(problem, model, direction, settings)
-            return BranchPoint(problem, model, load, tangent, 0.0, corrections)
+            tangent = branch_direction(model, slope, direction, control)
+            return BranchPoint(family, model, value, tangent, 0.0, corrections)
         best = min(best, model.residual)
-        system = _bordered(problem, model, normal, direction.load, settings)
+        system = _bordered(model, slope, direction, control)
         rhs = -np.append(model.gradient, off)
         try:
             shift = _solve(system, rhs, smallest)
         except LinAlgError:
             return None
-        x = project_lengths(problem.loop, x + model.displacement(shift[:-1]))
-        load = load + float(shift[-1])
+        x = constraint.project(x + model.displacement(shift[:-1]))
+        value = value + float(shift[-1])
     return None
 
 
@@ -182,53 +191,49 @@ def _solve(system: FloatArray, rhs: FloatArray, smallest: float) -> FloatArray:
 
 
 def branch_direction(
-    problem: Problem, model: TangentModel, last: Direction, settings: Settings
+    model: TangentModel, slope: FloatArray, last: Direction, control: StepControl
 ) -> Direction:
     """Return the branch's direction at an equilibrium, turned the way of `last`.
 
-    The null vector of [H, b]: bordering by `last` would have to find one near `last`, also
-    where a step has landed on a branch that crosses.
+    `slope` (m,) is the model's parameter_slope. The null vector of [H, b]: bordering by
+    `last` would have to find one near `last`, also where a step has landed on a branch
+    that crosses.
     """
-    slope = load_derivative(problem, model) * settings.load_unit
-    wide = np.column_stack([model.hessian, slope])
+    wide = np.column_stack([model.hessian, slope * control.unit])
     null = np.linalg.qr(wide.T, mode="complete")[0][:, -1]
-    found = make_direction(model, null[:-1], null[-1] * settings.load_unit, settings)
-    return found if inner(problem, found, last, settings) >= 0 else found.reversed()
+    found = make_direction(model, null[:-1], null[-1] * control.unit, control)
+    return found if inner(model, found, last, control) >= 0 else found.reversed()
 
 
 def make_direction(
-    model: TangentModel, coefficients: FloatArray, load: float, settings: Settings
+    model: TangentModel, coefficients: FloatArray, rate: float, control: StepControl
 ) -> Direction:
     """Return the direction with these tangent coefficients, scaled to unit arclength."""
-    size = float(np.sqrt(coefficients @ coefficients + (load / settings.load_unit) ** 2))
-    return Direction(model.displacement(coefficients / size), load / size)
+    size = float(np.sqrt(coefficients @ coefficients + (rate / control.unit) ** 2))
+    return Direction(model.displacement(coefficients / size), rate / size)
 
 
-def load_derivative(problem: Problem, model: TangentModel) -> FloatArray:
-    """Return b = dg/dl (2 n_b - 6,), the film's force per unit of load on tangent space."""
-    force = problem.condensed.force(model.x)
-    derivative: FloatArray = model.basis.T @ (force.ravel() / model.scale)
-    return derivative
+def parameter_slope(family: Family, energy: LoopEnergy, model: TangentModel) -> FloatArray:
+    """Return b = dg/dparameter (m,), g the model's gradient."""
+    rate = energy.rate(family.parameter, model.x)
+    slope: FloatArray = model.basis.T @ (rate.ravel() / model.scale)
+    return slope
 
 
 def coefficients_of(model: TangentModel, displacement: FloatArray) -> FloatArray:
-    """Return the tangent coefficients (2 n_b - 6,) of a displacement (n_b, 3)."""
+    """Return the tangent coefficients (m,) of a displacement (n, d)."""
     found: FloatArray = model.basis.T @ (displacement.ravel() * model.scale)
     return found
 
 
 def _bordered(
-    problem: Problem,
-    model: TangentModel,
-    normal: FloatArray,
-    load: float,
-    settings: Settings,
+    model: TangentModel, slope: FloatArray, direction: Direction, control: StepControl
 ) -> FloatArray:
-    """Return [[H, b], [normal^T, load / unit^2]]: regular at folds, where H is not."""
-    m = len(normal)
+    """Return [[H, b], [normal^T, rate / unit^2]]: regular at folds, where H is not."""
+    m = len(slope)
     system = np.empty((m + 1, m + 1))
     system[:m, :m] = model.hessian
-    system[:m, m] = load_derivative(problem, model)
-    system[m, :m] = normal
-    system[m, m] = load / settings.load_unit**2
+    system[:m, m] = slope
+    system[m, :m] = coefficients_of(model, direction.displacement)
+    system[m, m] = direction.rate / control.unit**2
     return system

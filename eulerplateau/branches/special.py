@@ -17,15 +17,15 @@ from functools import partial
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.between import Stretch, load_rate
-from eulerplateau.branches.continuation import advance, freed
+from eulerplateau.branches.between import Interval, parameter_rate
+from eulerplateau.branches.continuation import advance, released
 from eulerplateau.branches.point import (
     BranchPoint,
     Direction,
-    Settings,
+    StepControl,
     correct,
-    load_derivative,
     make_direction,
+    parameter_slope,
 )
 from eulerplateau.branches.symmetry import ModeSymmetry, mode_symmetry
 
@@ -43,10 +43,10 @@ _IDLE = 1e-6
 # Part of an eigenvalue's change that it may be short of zero where it changes sign; and how
 # many times what rounding makes of it the change has to be.
 _LEAP, _CLEAR = 1e-5, 1e3
-# Relative difference of loads below which two modes are lost together.
+# Relative difference of values below which two modes are lost together.
 _TOGETHER = 1e-6
-# Part of a pure change of load that a direction may have and still count as level: near
-# enough to a pitchfork to cross over, not so near that its equations are singular.
+# Part of a pure change of the parameter that a direction may have and still count as level:
+# near enough to a pitchfork to cross over, not so near that its equations are singular.
 _LEVEL = 0.02
 # Where a branch is almost level all along: the part of its steepest that counts as level.
 _LEVELLED = 0.25
@@ -59,11 +59,11 @@ class SpecialPoint:
     Attributes
     ----------
     kind : FOLD or BIFURCATION
-    point : the equilibrium; at a bifurcation its direction is (q, 1), towards higher loads
+    point : the equilibrium; at a bifurcation its direction is (q, 1), towards higher values
     mode : (n_b, 3) float, the critical displacement phi
     eigenvalue : float, what is left of the critical eigenvalue
-    load_error : float
-        What rounding in the eigenvalue can have moved the load by.
+    error : float
+        What rounding in the eigenvalue can have moved the parameter by.
     n_unstable : int, negative eigenvalues not counting the critical one
     multiplicity : int, eigenvalues that vanish together
     symmetry : which symmetries phi breaks
@@ -76,7 +76,7 @@ class SpecialPoint:
     point: BranchPoint
     mode: FloatArray
     eigenvalue: float
-    load_error: float
+    error: float
     n_unstable: int
     multiplicity: int
     symmetry: ModeSymmetry
@@ -84,54 +84,54 @@ class SpecialPoint:
 
 
 def special_points(
-    before: BranchPoint, after: BranchPoint, settings: Settings
+    before: BranchPoint, after: BranchPoint, control: StepControl
 ) -> Iterator[SpecialPoint]:
     """Yield the special points between two neighbouring points, in order of arclength."""
-    stretch = Stretch(before, after, settings)
-    if before.direction.load * after.direction.load < 0:
-        found = _turn(stretch)
+    interval = Interval(before, after, control)
+    if before.direction.rate * after.direction.rate < 0:
+        found = _turn(interval)
         if found is not None:
             yield found
         return
     located = [
         (point, index)
-        for index in stretch.crossing
-        if (point := stretch.zero(index)) is not None
+        for index in interval.crossing
+        if (point := interval.zero(index)) is not None
     ]
     located.sort(key=lambda pair: pair[0].arclength)
     last = None
     for point, _ in located:
         # Symmetric loops lose several modes at once: one event, and one set of branches.
-        if last is not None and abs(point.load / last - 1) < _TOGETHER:
+        if last is not None and abs(point.value / last - 1) < _TOGETHER:
             continue
-        last = point.load
-        together = [i for other, i in located if abs(other.load / last - 1) < _TOGETHER]
-        found = _describe(stretch, point, min(together), len(together))
+        last = point.value
+        together = [i for other, i in located if abs(other.value / last - 1) < _TOGETHER]
+        found = _describe(interval, point, min(together), len(together))
         # The eigenvalue of an all but free rotation wanders about zero: no event.
-        if found.load_error < _TOGETHER * point.load:
+        if found.error < _TOGETHER * point.value:
             yield found
 
 
-def leaps(before: BranchPoint, after: BranchPoint, settings: Settings) -> bool:
+def leaps(before: BranchPoint, after: BranchPoint, control: StepControl) -> bool:
     """Return whether a step has left its branch for another that passes close by.
 
     Where two branches miss each other narrowly, as an imperfect mesh makes those of a
     bifurcation do, an eigenvalue then changes sign without being zero in between.
     """
-    if before.direction.load * after.direction.load < 0:
+    if before.direction.rate * after.direction.rate < 0:
         return False
-    stretch = Stretch(before, after, settings)
-    for index in stretch.crossing:
-        rise = stretch.rise(index)
+    interval = Interval(before, after, control)
+    for index in interval.crossing:
+        rise = interval.rise(index)
         if rise < _CLEAR * after.stability.error_bound:
             continue
-        point = stretch.zero(index)
+        point = interval.zero(index)
         if point is None or abs(point.stability.eigenvalues[index]) > _LEAP * rise:
             return True
     return False
 
 
-def branches_from(special: SpecialPoint, settings: Settings) -> Iterator[BranchPoint]:
+def branches_from(special: SpecialPoint, control: StepControl) -> Iterator[BranchPoint]:
     """Yield a first point on each side of the other branch through a bifurcation."""
     if special.kind == FOLD:
         return
@@ -139,32 +139,32 @@ def branches_from(special: SpecialPoint, settings: Settings) -> Iterator[BranchP
     away = special.point.direction
     if not special.arrived:
         coefficients = model.basis.T @ (special.mode.ravel() * model.scale)
-        away = make_direction(model, coefficients, 0.0, settings)
+        away = make_direction(model, coefficients, 0.0, control)
     for direction in (away, away.reversed()):
-        found = _step_along(special.point, direction, _SWITCHING_STEP, settings)
+        found = _step_along(special.point, direction, _SWITCHING_STEP, control)
         if found is not None:
-            yield replace(freed(found, settings), arclength=_SWITCHING_STEP)
+            yield replace(released(found, control), arclength=_SWITCHING_STEP)
 
 
-def _turn(stretch: Stretch) -> SpecialPoint | None:
-    """Return the fold, or the bifurcation the branch passes across at extreme load.
+def _turn(interval: Interval) -> SpecialPoint | None:
+    """Return the fold, or the bifurcation the branch passes across at an extreme value.
 
-    A pitchfork's side branch crosses the other branch where its own load is extreme. Both
+    A pitchfork's side branch crosses the other branch where its own value is extreme. Both
     its halves are mirror images, so there its critical eigenvalue touches zero, while at a
     fold it crosses. Its equations are singular there, so the point is located on the other
     branch.
     """
-    ends = stretch.before.direction.load, stretch.after.direction.load
-    level = min(_LEVEL * stretch.settings.load_unit, _LEVELLED * max(np.abs(ends)))
-    near = stretch.locate(partial(load_rate, level))
+    ends = interval.before.direction.rate, interval.after.direction.rate
+    level = min(_LEVEL * interval.control.unit, _LEVELLED * max(np.abs(ends)))
+    near = interval.locate(partial(parameter_rate, level))
     if near is None:
         return None
     index = int(np.abs(near.stability.eigenvalues).argmin())
-    if stretch.crossing:
-        extreme = stretch.locate(partial(load_rate, 0.0))
-        fold = None if extreme is None else _describe(stretch, extreme, index, 1)
+    if interval.crossing:
+        extreme = interval.locate(partial(parameter_rate, 0.0))
+        fold = None if extreme is None else _describe(interval, extreme, index, 1)
         return fold if fold is not None and fold.kind == FOLD else None
-    other = _across(stretch, near, index)
+    other = _across(interval, near, index)
     if other is None or len(other.crossing) != 1:
         return None
     number = other.crossing[0]
@@ -172,28 +172,28 @@ def _turn(stretch: Stretch) -> SpecialPoint | None:
     if point is None:
         return None
     found = _describe(other, point, number, 1)
-    here = replace(found.point, arclength=_arclength_of_extreme(stretch))
+    here = replace(found.point, arclength=_arclength_of_extreme(interval))
     return replace(found, point=here, arrived=True)
 
 
-def _arclength_of_extreme(stretch: Stretch) -> float:
-    """Return where on the branch the load is extreme; its rate changes linearly there."""
-    before, after = stretch.before.direction.load, stretch.after.direction.load
-    return stretch.before.arclength + stretch.length * before / (before - after)
+def _arclength_of_extreme(interval: Interval) -> float:
+    """Return where on the branch the parameter is extreme: its rate is linear there."""
+    before, after = interval.before.direction.rate, interval.after.direction.rate
+    return interval.before.arclength + interval.length * before / (before - after)
 
 
-def _across(stretch: Stretch, extreme: BranchPoint, index: int) -> Stretch | None:
-    """Return the stretch of the other branch that holds the crossing."""
-    settings = stretch.settings
-    direction = _through(extreme, index, settings)
-    back = _step_along(extreme, direction, -_SWITCHING_STEP, settings)
+def _across(interval: Interval, extreme: BranchPoint, index: int) -> Interval | None:
+    """Return the interval of the other branch that holds the crossing."""
+    control = interval.control
+    direction = _through(extreme, index, control)
+    back = _step_along(extreme, direction, -_SWITCHING_STEP, control)
     if back is None:
         return None
-    forth = advance(back, 2 * _SWITCHING_STEP, settings)
-    return None if forth is None else Stretch(back, forth, settings)
+    forth = advance(back, 2 * _SWITCHING_STEP, control)
+    return None if forth is None else Interval(back, forth, control)
 
 
-def _through(point: BranchPoint, index: int, settings: Settings) -> Direction:
+def _through(point: BranchPoint, index: int, control: StepControl) -> Direction:
     """Return (q, 1) with H q = -b and no part along the null vector `index`.
 
     At the bifurcation itself the bordered system has two null vectors, so the direction
@@ -201,44 +201,44 @@ def _through(point: BranchPoint, index: int, settings: Settings) -> Direction:
     """
     values, vectors = point.model.eigen
     others = np.arange(len(values)) != index
-    slope = vectors[:, others].T @ load_derivative(point.problem, point.model)
+    slope = vectors[:, others].T @ parameter_slope(point.family, point.energy, point.model)
     response = -vectors[:, others] @ (slope / values[others])
-    return make_direction(point.model, response, 1.0, settings)
+    return make_direction(point.model, response, 1.0, control)
 
 
 def _step_along(
     point: BranchPoint,
     direction: Direction,
     step: float,
-    settings: Settings,
+    control: StepControl,
 ) -> BranchPoint | None:
     guess = point.x + step * direction.displacement
     return correct(
-        point.problem, guess, point.load + step * direction.load, direction, settings
+        point.family, guess, point.value + step * direction.rate, direction, control
     )
 
 
 def _part_along(point: BranchPoint, mode: FloatArray) -> float:
-    slope = load_derivative(point.problem, point.model)
-    pull = point.problem.condensed.force(point.x).ravel() / point.model.scale
+    slope = parameter_slope(point.family, point.energy, point.model)
+    pull = point.energy.rate(point.family.parameter, point.x).ravel() / point.model.scale
     size = max(float(np.linalg.norm(slope)), _IDLE * float(np.linalg.norm(pull)))
     return abs(float(slope @ mode)) / size
 
 
 def _describe(
-    stretch: Stretch, point: BranchPoint, index: int, multiplicity: int
+    interval: Interval, point: BranchPoint, index: int, multiplicity: int
 ) -> SpecialPoint:
     values, vectors = point.model.eigen
     mode = point.model.displacement(vectors[:, index])
     folds = _part_along(point, vectors[:, index]) > _NO_PART
     if not folds:
-        point = replace(point, direction=_through(point, index, stretch.settings))
+        point = replace(point, direction=_through(point, index, interval.control))
     return SpecialPoint(
         kind=FOLD if folds else BIFURCATION,
         point=point,
         mode=mode,
         eigenvalue=float(values[index]),
-        load_error=stretch.load_error(point, index),
+        error=interval.error(point, index),
         n_unstable=index,
         multiplicity=multiplicity,
         symmetry=mode_symmetry(point.x, mode),

@@ -1,56 +1,29 @@
-"""The true soap film: energy sigma times the area of the triangles, eq. continuum-energy.
+"""The true soap film: its energy is sigma times its area (eq. continuum-energy).
 
-A triangle with the sides e_0, e_1, e_2 (e_j opposite corner j, counter-clockwise), area A
-and unit normal n has
-
-    dA/dx_i = n x e_i / 2,    d2A/dx_i dx_j = (e_i . e_j) n n^T / (4 A) + eps_ij [n]_x / 2,
-
-eps_ij = 1 where j follows two after i, -1 where it follows one after, cyclically. The first
-part is the cotangent matrix acting on normal displacements; the second cancels in sums over
-a flat neighbourhood, where sliding inside the film costs nothing.
+Its inside has no rest state: where vertices lie, and which triangles join them, is no part
+of the film's state, and is chosen anew wherever triangles get thin (repair.py). As a
+function of its loop it is known near one shape at a time (interior.py).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
-from scipy.sparse import csc_array
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film import area_kernels
-from eulerplateau.film.dissection import LARGEST, dissect
-from eulerplateau.film.elimination import Elimination, plan, summed
-from eulerplateau.mesh import DiskMesh, smallest_angle, unit
+from eulerplateau.film.harmonic import balance
+from eulerplateau.film.interior import LocalFilm, local_film
+from eulerplateau.film.load import TENSION, Load
+from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
+from eulerplateau.film.repair import carry_along, mend_triangles
+from eulerplateau.film.tiling import LIMITS, Tiling
+from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
+from eulerplateau.mesh import DiskMesh, Shape
 
-
-@dataclass(frozen=True)
-class Sides:
-    """The triangles of a shape.
-
-    Attributes
-    ----------
-    edges : (n_t, 3, 3) float, the side opposite each corner
-    normals : (n_t, 3) float, unit
-    areas : (n_t,) float
-    """
-
-    edges: FloatArray
-    normals: FloatArray
-    areas: FloatArray
-
-    @property
-    def smallest_angle(self) -> float:
-        """The smallest angle of all triangles, degrees."""
-        return smallest_angle(self.edges, self.areas)
-
-    @cached_property
-    def cotangent(self) -> FloatArray:
-        """(e_i . e_j) / (4 A) (n_t, 3, 3): half of Dirichlet's energy, corner by corner."""
-        cotangent = np.empty_like(self.edges)
-        area_kernels.cotangents(self.edges, self.areas, cotangent)
-        return cotangent
+# Tilings whose patterns are kept: of a sweep on a few meshes none is planned twice.
+_KEPT = 4
 
 
 @dataclass(frozen=True)
@@ -59,163 +32,182 @@ class AreaFilm:
 
     Attributes
     ----------
-    triangles : (n_t, 3) int
     loop, interior : (n_b,) and (n_v - n_b,) int
-    rest : (n_v, 3) float, the mesh as it was given
-    tension_per_load : float
-        sigma L^3 / alpha per unit of load: 1.
     """
 
-    triangles: IntArray
     loop: IntArray
     interior: IntArray
-    rest: FloatArray
-    tension_per_load: float = 1.0
+    load: Load = TENSION
+    _tilings: list[Tiling] = field(default_factory=list, repr=False, compare=False)
+    _recent: list[AreaOfLoop] = field(default_factory=list, repr=False, compare=False)
+
+    def tiling(self, triangles: IntArray) -> Tiling:
+        """Return the tiling by these triangles (n_t, 3), its pattern kept for later."""
+        for known in self._tilings:
+            if known.triangles is triangles or np.array_equal(known.triangles, triangles):
+                return known
+        return self._keep(Tiling(triangles, self.loop, self.interior))
+
+    def _keep(self, tiling: Tiling) -> Tiling:
+        if all(known is not tiling for known in self._tilings):
+            self._tilings[:] = [tiling, *self._tilings[: _KEPT - 1]]
+        return tiling
+
+    def on(self, tiling: Tiling, x: FloatArray) -> Shape:
+        """Return the shape of vertices x (n_v, 3) on a tiling, kept for later."""
+        return Shape(x, self._keep(tiling).triangles, self.loop)
 
     @property
-    def n_v(self) -> int:
-        """Number of vertices."""
-        return len(self.loop) + len(self.interior)
+    def dimension(self) -> int:
+        """Coordinates of its loops: 3, in space."""
+        return 3
 
-    def retiled(self, triangles: IntArray) -> AreaFilm:
-        """Return the film with other triangles (n_t, 3)."""
-        return replace(self, triangles=triangles)
-
-    def sides(self, x: FloatArray) -> Sides:
-        """Return the triangles of the shape x (n_v, 3)."""
-        n = len(self.triangles)
-        sides = Sides(np.empty((n, 3, 3)), np.empty((n, 3)), np.empty(n))
-        area_kernels.measure(
-            np.ascontiguousarray(x), self.triangles, sides.edges, sides.normals, sides.areas
-        )
-        return sides
-
-    def energy_gradient(self, x: FloatArray, load: float) -> tuple[float, FloatArray]:
+    def energy_gradient(self, shape: Shape, load: float) -> tuple[float, FloatArray]:
         """Return load * area and its gradient (n_v, 3)."""
-        sides = self.sides(x)
-        return load * float(sides.areas.sum()), load * self.gradient(sides)
+        tiling = self.tiling(shape.triangles)
+        sides = tiling.sides(shape.x)
+        return load * float(sides.areas.sum()), load * tiling.gradient(sides)
 
-    def gradient(self, sides: Sides) -> FloatArray:
-        """Return the gradient of the area (n_v, 3)."""
-        gradient = np.zeros((self.n_v, 3))
-        area_kernels.sum_gradient(self.triangles, sides.edges, sides.normals, gradient)
-        return gradient
+    def forces(self, shape: Shape) -> FloatArray:
+        """Return the forces (n_v, 3) of unit load that do work (harmonic.balance)."""
+        return balance(self.tiling(shape.triangles), shape.x)
 
-    def gather(self, corners: FloatArray) -> FloatArray:
-        """Sum what the corners (n_t, 3, 3) hold at each vertex (n_v, 3)."""
-        return summed(self.triangles.ravel(), corners.reshape(-1, 3), self.n_v)
+    def prepared(self, shape: Shape) -> Shape:
+        """Return the shape brought near to rest, thin triangles replaced."""
+        tiling, x = self.tiling(shape.triangles), shape.x
+        if tiling.sides(x).smallest_angle < LIMITS.thin:
+            tiling, x = mend_triangles(tiling, x)
+        return self._near(tiling, x).reference
 
-    def change(self, x: FloatArray, after: FloatArray) -> float:
-        """Return area(after) - area(x) with the relative precision of the difference."""
-        first, second = np.ascontiguousarray(x), np.ascontiguousarray(after)
-        return area_kernels.change(first, second, self.triangles)
+    def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
+        """Return the shape after its loop has moved, repaired where triangles got thin."""
+        tiling = self.tiling(shape.triangles)
+        return self.on(*carry_along(tiling, shape.x, x_loop))
 
-    def vertex_normals(self, sides: Sides) -> FloatArray:
-        """Return unit normals (n_v, 3), the triangles' weighted by their areas."""
-        weighted = np.repeat((sides.normals * sides.areas[:, None])[:, None], 3, axis=1)
-        total = self.gather(weighted)
-        return unit(total)
+    def of_loop(self, near: Shape) -> AreaOfLoop:
+        """Return the film as a function of its loop near a shape, on its triangles."""
+        for known in self._recent:
+            if known.reference.x is near.x and known.reference.triangles is near.triangles:
+                return known
+        return self._near(self.tiling(near.triangles), near.x)
 
-    def cotangent_laplacian(self, sides: Sides) -> csc_array:
-        """Return L (n_v, n_v) with area gradient = L x; the film at rest is L x = 0."""
-        return self._scalar.fill(sides.cotangent)
+    def _near(self, tiling: Tiling, x: FloatArray) -> AreaOfLoop:
+        found = AreaOfLoop(self, local_film(self._keep(tiling), x))
+        self._recent[:] = [found]
+        return found
 
-    def normal_hessian(self, sides: Sides, directions: FloatArray) -> csc_array:
-        """Return the Hessian (n_v, n_v) for displacements along `directions` (n_v, 3)."""
-        entries = self._scalar.empty()
-        area_kernels.sum_along(
-            sides.cotangent,
-            sides.normals,
-            self.triangles,
-            directions,
-            self._scalar.place,
-            entries,
-        )
-        return self._scalar.matrix(entries)
+    def slide(self, loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+        """Return the loop's sliding along itself (n_b, 3): the film only sees its curve."""
+        return sliding(loop, x_loop)
 
-    def hessian(self, sides: Sides) -> FloatArray:
-        """Return the whole Hessian, a block (3, 3) for each of `pairs` (m, 3, 3)."""
-        blocks = np.zeros((len(self._scalar.indices), 3, 3))
-        place = self._scalar.place
-        area_kernels.sum_hessian(sides.cotangent, sides.normals, place, blocks)
-        return blocks
-
-    @property
-    def pairs(self) -> tuple[IntArray, IntArray]:
-        """The vertices of every entry (m,) of a matrix (n_v, n_v): its row, its column."""
-        return self._scalar.indices, self._scalar.columns
-
-    @cached_property
-    def pieces(self) -> list[IntArray]:
-        """The interior, numbered 0 ... n_i - 1, in pieces to be eliminated one by one."""
-        return self._dissected(LARGEST)
-
-    @cached_property
-    def small_pieces(self) -> list[IntArray]:
-        """The same in smaller ones, for three unknowns per vertex."""
-        return self._dissected(LARGEST // 3)
-
-    def _dissected(self, largest: int) -> list[IntArray]:
-        graph = self._scalar.matrix(np.ones(len(self._scalar.indices))).tocsr()
-        return [
-            np.searchsorted(self.interior, piece)
-            for piece in dissect(graph, self.loop, self.interior, largest)
-        ]
-
-    @cached_property
-    def elimination(self) -> Elimination:
-        """Of the interior from a matrix (n_v, n_v) with an entry for each of `pairs`."""
-        pieces = [self.interior[piece] for piece in self.pieces]
-        return plan(*self.pairs, pieces, self.loop)
-
-    @cached_property
-    def _scalar(self) -> _Pattern:
-        return _Pattern.of(self.triangles, self.n_v)
+    def pinched(self, shape: Shape, loop: Loop) -> bool:
+        """Return whether strands of the loop meet: no film spans what is between them."""
+        return loop.strands_meet(shape.x_loop)
 
 
 @dataclass(frozen=True)
-class _Pattern:
-    """Where the entries of element matrices go in a sparse one; found once, then filled.
+class AreaOfLoop:
+    """A soap film as a function of its loop, good near one shape."""
 
-    Attributes
-    ----------
-    indices, indptr : the sparse matrix's, column by column
-    place : (n_t, 3, 3) int, the entry for each pair of a triangle's corners
+    film: AreaFilm
+    local: LocalFilm
+
+    @property
+    def reference(self) -> Shape:
+        """The shape it was made at."""
+        return Shape(self.local.x, self.local.tiling.triangles, self.film.loop)
+
+    def project(self, x: FloatArray) -> FloatArray:
+        """Return the positions (n, 3) as they are."""
+        return x
+
+    def lift(self, x_loop: FloatArray) -> FloatArray:
+        """Return the loop (n_b, 3) as it is."""
+        return x_loop
+
+    def shape(self, x_loop: FloatArray) -> Shape:
+        """Return the film at rest on a loop (n_b, 3)."""
+        found = self.local.relax(x_loop)
+        return Shape(found.x, self.local.tiling.triangles, self.film.loop)
+
+    def force(self, x_loop: FloatArray) -> FloatArray:
+        """Return the gradient of the area with respect to the loop (n_b, 3)."""
+        return self.local.relax(x_loop).force
+
+    def displacement(self, x_loop: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
+        return self.local.relax(x_loop).displacement(moved)
+
+    def energy(self, loop: Loop, load: float) -> LoopEnergy:
+        """Return bending plus load * area of the loop; it slides along itself freely."""
+        motions = partial(free_motions, loop, slides=True)
+        return inextensible(loop, Area(self.local, load), motions)
+
+    def made_at(self, x_loop: FloatArray) -> bool:
+        """Return whether the film has not tilted from where it was made."""
+        return self.local.relax(x_loop).central
+
+    def renewed(self, x_loop: FloatArray) -> AreaOfLoop:
+        """Return the film near the shape on this loop; a free one stays free."""
+        if self.local.is_free and (free := self.released(x_loop)) is not self:
+            return free
+        return self.film.of_loop(self.film.prepared(self.shape(x_loop)))
+
+    def released(self, x_loop: FloatArray) -> AreaOfLoop:
+        """Return the film near the discrete minimal surface next to that on this loop.
+
+        The film itself where there is none, and where it is flat: then its vertices may
+        lie anywhere.
+        """
+        tiling, x = self.local.tiling, self.shape(x_loop).x
+        if is_flat(tiling, x):
+            return self
+        found = find_minimal_surface(tiling, x)
+        if found is None:
+            return self
+        return AreaOfLoop(self.film, local_film(*found, free=True))
+
+
+@dataclass(frozen=True)
+class Area(Term):
+    """load * A(x_b), A the least area of films near one shape (interior.py).
+
+    Its Hessian is a full (3 n_b, 3 n_b) matrix that changes with the loop.
     """
 
-    indices: IntArray
-    indptr: IntArray
-    place: IntArray
+    local: LocalFilm
+    load: float
 
-    @classmethod
-    def of(cls, triangles: IntArray, n: int) -> _Pattern:
-        """Find the pattern of triangles (n_t, 3), each coupling its corners."""
-        row = np.repeat(triangles, 3, axis=1).ravel()
-        column = np.tile(triangles, 3).ravel()
-        entries, place = np.unique(column * n + row, return_inverse=True)
-        indptr = np.searchsorted(entries, np.arange(n + 1) * n)
-        return cls(entries % n, indptr, place.reshape(-1, 3, 3))
+    @property
+    def rounding(self) -> float:
+        """What rounding alone leaves of a force, per unit of position.
 
-    @cached_property
-    def columns(self) -> IntArray:
-        """The column of every entry."""
-        return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
+        A film of tension 1 pulls with the sum of half the sides across a vertex.
+        """
+        return float(np.finfo(np.float64).eps) * 8 * abs(self.load)
 
-    def empty(self) -> FloatArray:
-        """Return zeros for the entries of a matrix with this pattern."""
-        return np.zeros(len(self.indices))
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return the gradient (n_b, 3)."""
+        return self.load * self.local.relax(x).force
 
-    def matrix(self, entries: FloatArray) -> csc_array:
-        """Return the matrix with these entries."""
-        n = len(self.indptr) - 1
-        return csc_array((entries, self.indices, self.indptr), shape=(n, n))
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return the second derivative (3 n_b, 3 n_b)."""
+        return self.load * self.local.relax(x).hessian
 
-    def fill(self, blocks: FloatArray) -> csc_array:
-        """Return the matrix with the element matrices (n_t, 3, 3) summed into it."""
-        place = self.place.ravel()
-        return self.matrix(summed(place, blocks.ravel(), len(self.indices)))
+    def change(self, x: FloatArray, step: FloatArray) -> float:
+        """Return the change of the area, summed triangle by triangle as differences."""
+        before, after = self.local.relax(x), self.local.relax(x + step)
+        return self.load * self.local.tiling.change(before.x, after.x)
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return the derivative of the force by the load."""
+        return self.local.relax(x).force if parameter == "load" else None
+
+    def holds(self, x: FloatArray) -> bool:
+        """Return whether the film is still close enough to where it was made."""
+        return self.local.holds(self.local.relax(x).sides)
 
 
-def area(mesh: DiskMesh) -> AreaFilm:
-    """Return the true soap film on a mesh."""
-    return AreaFilm(mesh.triangles, mesh.loop, mesh.interior, mesh.x)
+def area(disk: DiskMesh) -> AreaFilm:
+    """Return the true soap film on a disk."""
+    return AreaFilm(disk.loop, disk.interior)

@@ -14,10 +14,10 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.area import AreaFilm, Sides
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.elimination import Elimination, plan, summed
 from eulerplateau.film.normal_moves import AXES, is_inside, numbers
+from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 
 # Rounding of forces of unit tension along an edge, in eps: some twenty of them are summed.
 ROUNDING = 20 * float(np.finfo(np.float64).eps)
@@ -32,19 +32,19 @@ _SOFTER, _LONG, _SHORT = 0.25, 0.5, 0.1
 _HALVINGS = 6
 # A vertex moves at most this part of the shortest side at it, and no triangle turns farther
 # than this cosine.
-_FARTHEST, _TURNED = 0.3, 0.5
+_FARTHEST = 0.3
 
 
 @dataclass(frozen=True)
-class Free:
+class FreeInterior:
     """All displacements of a curved film: three unknowns for each vertex inside."""
 
-    film: AreaFilm
+    tiling: Tiling
 
     @property
     def size(self) -> int:
         """Three for each vertex inside."""
-        return 3 * len(self.film.interior)
+        return 3 * len(self.tiling.interior)
 
     def displaced(self, u: FloatArray) -> FloatArray:
         """Return u as (n_i, 3)."""
@@ -52,14 +52,16 @@ class Free:
 
     def work(self, gradient: FloatArray) -> FloatArray:
         """Return the gradient inside (3 n_i,)."""
-        return gradient[self.film.interior].ravel()
+        return gradient[self.tiling.interior].ravel()
 
-    def stiffened(self, sides: Sides, shift: float) -> tuple[Condensation, float]:
+    def stiffened(
+        self, sides: TriangleGeometry, shift: float
+    ) -> tuple[Condensation, float]:
         """Factorise the Hessian inside plus a shift, the least found that does.
 
         From the given one on; returns the shift too. Raises LinAlgError if none does.
         """
-        blocks = self.film.hessian(sides)
+        blocks = self.tiling.hessian(sides)
         while True:
             shifted = self._stiffened(blocks, shift)[self._pairs_inside]
             try:
@@ -75,9 +77,9 @@ class Free:
 
     def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
         """Return H m inside (3 n_i,)."""
-        i, k = self.film.pairs
+        i, k = self.tiling.pairs
         pull = np.einsum("pcd,pd->pc", blocks, moved[k])
-        return self.work(summed(i, pull, self.film.n_v))
+        return self.work(summed(i, pull, self.tiling.n_v))
 
     def _stiffened(self, blocks: FloatArray, shift: float) -> FloatArray:
         blocks = blocks.copy()
@@ -87,18 +89,18 @@ class Free:
     @cached_property
     def _own(self) -> IntArray:
         """The pairs of a vertex with itself."""
-        i, k = self.film.pairs
+        i, k = self.tiling.pairs
         return np.flatnonzero(i == k)
 
     @cached_property
     def _pairs_inside(self) -> IntArray:
-        i, k = self.film.pairs
-        inside = is_inside(self.film)
+        i, k = self.tiling.pairs
+        inside = is_inside(self.tiling)
         return np.flatnonzero(inside[i] & inside[k])
 
     @cached_property
     def _pieces(self) -> list[IntArray]:
-        small = self.film.small_pieces
+        small = self.tiling.small_pieces
         return [(3 * piece[:, None] + AXES).ravel() for piece in small]
 
     @cached_property
@@ -107,26 +109,26 @@ class Free:
 
     @cached_property
     def _elimination(self) -> Elimination:
-        kept = np.arange(self.size, 3 * self.film.n_v)
-        return self._planned(np.arange(len(self.film.pairs[0])), kept)
+        kept = np.arange(self.size, 3 * self.tiling.n_v)
+        return self._planned(np.arange(len(self.tiling.pairs[0])), kept)
 
     def _planned(self, pairs: IntArray, kept: IntArray) -> Elimination:
-        i, k = self.film.pairs
-        number = 3 * numbers(self.film)[:, None] + AXES
+        i, k = self.tiling.pairs
+        number = 3 * numbers(self.tiling)[:, None] + AXES
         row = np.repeat(number[i[pairs]], 3, axis=1)
         column = np.tile(number[k[pairs]], 3)
         return plan(row.ravel(), column.ravel(), self._pieces, kept)
 
 
-def at_rest(free: Free, x: FloatArray) -> FloatArray:
+def at_rest(free: FreeInterior, x: FloatArray) -> FloatArray:
     """Return the film of least area near a shape (n_v, 3), its loop and triangles kept.
 
     Raises LinAlgError where none is found.
     """
     error, shift = np.inf, STILL
     for _ in range(_STEPS):
-        sides = free.film.sides(x)
-        force = free.work(free.film.gradient(sides))
+        sides = free.tiling.sides(x)
+        force = free.work(free.tiling.gradient(sides))
         before, error = error, float(np.abs(force).max(initial=0.0))
         if is_rest(sides, error, before, shift == STILL):
             return x
@@ -134,7 +136,7 @@ def at_rest(free: Free, x: FloatArray) -> FloatArray:
     raise LinAlgError("the film does not come to rest")
 
 
-def is_rest(sides: Sides, error: float, before: float, full: bool) -> bool:
+def is_rest(sides: TriangleGeometry, error: float, before: float, full: bool) -> bool:
     """Whether what is left of forces, after a full step or not, is rounding."""
     scale = float(np.abs(sides.edges).max())
     stuck = full and error < 1e-9 * scale and error > 0.25 * before
@@ -142,7 +144,11 @@ def is_rest(sides: Sides, error: float, before: float, full: bool) -> bool:
 
 
 def smaller(
-    free: Free, x: FloatArray, sides: Sides, force: FloatArray, shift: float
+    free: FreeInterior,
+    x: FloatArray,
+    sides: TriangleGeometry,
+    force: FloatArray,
+    shift: float,
 ) -> tuple[FloatArray, float]:
     """Return the film (n_v, 3) after one step that makes it smaller, and the next shift.
 
@@ -150,7 +156,7 @@ def smaller(
     """
     inverse, shift = free.stiffened(sides, shift)
     step = -inverse.solve(force)
-    x, part = _moved(free.film, x, sides, free.displaced(step), float(force @ step))
+    x, part = _moved(free.tiling, x, sides, free.displaced(step), float(force @ step))
     if part < _SHORT:
         shift = max(_STIFFER * shift, _LEAST)
     elif part > _LONG:
@@ -159,35 +165,35 @@ def smaller(
 
 
 def _moved(
-    film: AreaFilm, x: FloatArray, sides: Sides, step: FloatArray, slope: float
+    tiling: Tiling, x: FloatArray, sides: TriangleGeometry, step: FloatArray, slope: float
 ) -> tuple[FloatArray, float]:
     """Return the film after the longest part of a step (n_i, 3) that makes it smaller.
 
     And that part, 0 if there is none.
     """
-    room = _shortest_sides(film, sides)[film.interior]
+    room = _shortest_sides(tiling, sides)[tiling.interior]
     farthest = float((np.linalg.norm(step, axis=1) / room).max())
     part = min(1.0, _FARTHEST / farthest)
     negligible = 1e-15 * float(sides.areas.sum())
     for _ in range(_HALVINGS):
         after = x.copy()
-        after[film.interior] += part * step
-        moved = film.sides(after)
+        after[tiling.interior] += part * step
+        moved = tiling.sides(after)
         turned = (moved.normals * sides.normals).sum(axis=1)
-        if (moved.areas > 0).all() and (turned > _TURNED).all():
-            gained = film.change(x, after)
+        if (moved.areas > 0).all() and (turned > LIMITS.turned).all():
+            gained = tiling.change(x, after)
             if gained <= 0.1 * part * slope or abs(part * slope) < negligible:
                 return after, part
         part *= 0.5
     return x, 0.0
 
 
-def _shortest_sides(film: AreaFilm, sides: Sides) -> FloatArray:
+def _shortest_sides(tiling: Tiling, sides: TriangleGeometry) -> FloatArray:
     """Return the length (n_v,) of the shortest side at each vertex."""
     lengths = np.linalg.norm(sides.edges, axis=2)
-    room = np.full(film.n_v, np.inf)
+    room = np.full(tiling.n_v, np.inf)
     for corner in range(3):
         # Side j lies opposite corner j.
         at_corner = np.minimum(lengths[:, corner - 1], lengths[:, corner - 2])
-        np.minimum.at(room, film.triangles[:, corner], at_corner)
+        np.minimum.at(room, tiling.triangles[:, corner], at_corner)
     return room

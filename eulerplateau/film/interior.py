@@ -26,6 +26,7 @@ removed as well: u are then all displacements inside, g_i = 0, f = g_b, and S is
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -33,11 +34,11 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import AreaFilm, Sides
 from eulerplateau.film.condensation import Condensation
-from eulerplateau.film.free_moves import Free, at_rest, is_rest
+from eulerplateau.film.free_moves import FreeInterior, at_rest, is_rest
 from eulerplateau.film.harmonic import follower
-from eulerplateau.film.normal_moves import AlongNormals, Variations, along_normals
+from eulerplateau.film.normal_moves import InteriorUnknowns, NormalHeights, normal_heights
+from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 
 _STEPS = 30
 # Parts of a predicted change that are tried, as long as triangles fold over.
@@ -51,15 +52,10 @@ _REWEIGHTINGS = 6
 # a film counts as being where its chart was made.
 _TILT = 0.9
 _NO_TILT = 1 - 1e-10
-# Degrees; and the part of its chart's worst angle that a thinner one may have come to.
-THIN = 12.0
-_THINNED = 0.7
-# Cosine by which a triangle may turn from its chart's: beyond it may have folded over.
-_FOLDED = 0.3
 
 
 @dataclass(frozen=True)
-class Relaxed:
+class FilmAtRest:
     """A film at rest on its loop, in a chart.
 
     Attributes
@@ -70,10 +66,10 @@ class Relaxed:
     gradient : (n_v, 3) float, of the area
     """
 
-    chart: Chart
+    local: LocalFilm
     x: FloatArray
     u: FloatArray
-    sides: Sides
+    sides: TriangleGeometry
     gradient: FloatArray
 
     @property
@@ -84,7 +80,7 @@ class Relaxed:
     @cached_property
     def force(self) -> FloatArray:
         """Gradient of the area with respect to the loop (n_b, 3)."""
-        return self.chart.carry(self.gradient)
+        return self.local.carry(self.gradient)
 
     @property
     def hessian(self) -> FloatArray:
@@ -95,7 +91,7 @@ class Relaxed:
     @cached_property
     def condensed(self) -> Condensation:
         """The second variation with the interior eliminated."""
-        return self.chart.variations.condense(self._second)
+        return self.local.variations.condense(self._second)
 
     @property
     def factorised(self) -> Condensation | None:
@@ -105,31 +101,28 @@ class Relaxed:
     @property
     def central(self) -> bool:
         """Whether the film is at rest in the chart made at its own shape."""
-        return (
-            isinstance(self.chart.variations, Free)
-            or self.chart.tilt(self.sides) > _NO_TILT
-        )
+        return self.local.is_central(self.sides)
 
     def displacement(self, moved: FloatArray) -> FloatArray:
         """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
-        result = self.chart.follow(moved)
-        result[self.chart.film.interior] += self.chart.variations.displaced(
+        result = self.local.follow(moved)
+        result[self.local.tiling.interior] += self.local.variations.displaced(
             self.response(result)
         )
         return result
 
     def response(self, followed: FloatArray) -> FloatArray:
         """Return how u changes (n_u,) on a film whose mesh has moved (n_v, 3)."""
-        forces = self.chart.variations.forces(self._second, followed)
+        forces = self.local.variations.forces(self._second, followed)
         return -self.condensed.solve(forces)
 
     @cached_property
     def _second(self) -> FloatArray:
-        return self.chart.film.hessian(self.sides)
+        return self.local.tiling.hessian(self.sides)
 
 
 @dataclass(frozen=True)
-class Chart:
+class LocalFilm(ABC):
     """Where the interior of a film is sought.
 
     Attributes
@@ -141,14 +134,27 @@ class Chart:
     variations : how interior vertices move: along these normals, or freely
     """
 
-    film: AreaFilm
+    tiling: Tiling
     x: FloatArray
-    sides: Sides
+    sides: TriangleGeometry
     normals: FloatArray
-    variations: Variations
     _follower: Condensation
+    variations: InteriorUnknowns
     # The last films asked for: a solver comes back to them for force, energy and Hessian.
-    _recent: list[Relaxed] = field(default_factory=list, repr=False, compare=False)
+    _recent: list[FilmAtRest] = field(default_factory=list, init=False, repr=False)
+
+    @property
+    @abstractmethod
+    def is_free(self) -> bool:
+        """Whether its vertices are free to move, as on a discrete minimal surface."""
+
+    @abstractmethod
+    def is_central(self, sides: TriangleGeometry) -> bool:
+        """Return whether a film at rest is where this one was made."""
+
+    @abstractmethod
+    def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
+        """Return the film at rest, its mesh at `base` (n_v, 3), next to a state."""
 
     def follow(self, moved: FloatArray) -> FloatArray:
         """Return how the mesh (n_v, 3) follows a displacement of the loop (n_b, 3)."""
@@ -158,61 +164,48 @@ class Chart:
         """Return g_b + G^T g_i (n_b, 3): what a gradient (n_v, 3) comes to on the loop."""
         return self._follower.carry(gradient)
 
-    def tilt(self, sides: Sides) -> float:
+    def tilt(self, sides: TriangleGeometry) -> float:
         """Return the smallest cosine between a film's normals and the chart's."""
-        now = self.film.vertex_normals(sides)[self.film.interior]
+        now = self.tiling.vertex_normals(sides)[self.tiling.interior]
         return float((now * self.normals).sum(axis=1).min(initial=1.0))
 
-    def holds(self, sides: Sides) -> bool:
+    def holds(self, sides: TriangleGeometry) -> bool:
         """Return whether a film is so near that neither it nor triangles turned far."""
         angle = sides.smallest_angle
-        thin = angle < THIN and angle < _THINNED * self.sides.smallest_angle
+        thin = angle < LIMITS.thin and angle < LIMITS.thinned * self.sides.smallest_angle
         return not thin and self.unfolded(sides) and self.tilt(sides) > _TILT
 
-    def extend(self, x_loop: FloatArray) -> FloatArray:
-        """Return the relaxed film (n_v, 3) on a loop (n_b, 3)."""
-        return self.relax(x_loop).x
-
-    def force(self, x_loop: FloatArray) -> FloatArray:
-        """Return the gradient of the area with respect to the loop (n_b, 3)."""
-        return self.relax(x_loop).force
-
-    def displacement(self, x_loop: FloatArray, moved: FloatArray) -> FloatArray:
-        """Return how the film (n_v, 3) follows a small move of its loop (n_b, 3)."""
-        return self.relax(x_loop).displacement(moved)
-
-    def relax(self, x_loop: FloatArray) -> Relaxed:
+    def relax(self, x_loop: FloatArray) -> FilmAtRest:
         """Return the film of least area on a loop (n_b, 3).
 
         Raises LinAlgError if there is none in this chart: the film has torn or folded.
         """
-        loop = self.film.loop
+        loop = self.tiling.loop
         for known in self._recent:
             if np.array_equal(known.x[loop], x_loop):
                 return known
         base = self.x + self.follow(x_loop - self.x[loop])
         base[loop] = x_loop
-        find = self._settled if isinstance(self.variations, Free) else self._newton
-        found = find(base, self._begun(base))
+        found = self._settled(base, self._begun(base))
         self._recent[:] = [found, *self._recent[:1]]
         return found
 
-    def _at(self, base: FloatArray, u: FloatArray) -> Relaxed | None:
+    def _at(self, base: FloatArray, u: FloatArray) -> FilmAtRest | None:
         """Return the film displaced by u from a mesh (n_v, 3); None if it folds over."""
         x = base.copy()
-        x[self.film.interior] += self.variations.displaced(u)
-        sides = self.film.sides(x)
+        x[self.tiling.interior] += self.variations.displaced(u)
+        sides = self.tiling.sides(x)
         if not self.unfolded(sides):
             return None
-        return Relaxed(self, x, u, sides, self.film.gradient(sides))
+        return FilmAtRest(self, x, u, sides, self.tiling.gradient(sides))
 
-    def _begun(self, base: FloatArray) -> Relaxed:
+    def _begun(self, base: FloatArray) -> FilmAtRest:
         """Return the film to begin with: the last, and its response as far as it goes."""
         last = self._recent[0] if self._recent else None
         u = np.zeros(self.variations.size) if last is None else last.u
         if last is not None and last.factorised is not None:
             moved = base - last.x
-            moved[self.film.interior] += self.variations.displaced(u)
+            moved[self.tiling.interior] += self.variations.displaced(u)
             response = last.response(moved)
             for part in _PARTS:
                 state = self._at(base, u + part * response)
@@ -223,10 +216,29 @@ class Chart:
             raise LinAlgError("a triangle of the film has folded over")
         return state
 
-    def _newton(self, base: FloatArray, state: Relaxed) -> Relaxed:
-        """Return the film at rest along its normals."""
+    def unfolded(self, sides: TriangleGeometry) -> bool:
+        """Return whether every triangle of a film has the side up that the chart's has."""
+        turned = (sides.normals * self.sides.normals).sum(axis=1)
+        return bool((sides.areas > 0).all() and (turned > LIMITS.folded).all())
+
+
+@dataclass(frozen=True)
+class HeightsFilm(LocalFilm):
+    """A film whose vertices inside move along normals only."""
+
+    variations: NormalHeights
+
+    @property
+    def is_free(self) -> bool:
+        """Whether its vertices are free to move: they are not."""
+        return False
+
+    def is_central(self, sides: TriangleGeometry) -> bool:
+        """Return whether the film's normals are those at which it was made."""
+        return self.tilt(sides) > _NO_TILT
+
+    def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
         variations = self.variations
-        assert isinstance(variations, AlongNormals)
         inverse = self._recent[0].factorised if self._recent else None
         error, fresh = np.inf, False
         for _ in range(_STEPS):
@@ -240,34 +252,43 @@ class Chart:
             state = self._descend(base, state, force, inverse)
         raise LinAlgError("the film does not come to rest")
 
-    def _settled(self, base: FloatArray, state: Relaxed) -> Relaxed:
-        """Return the film at rest by all displacements inside."""
-        assert isinstance(self.variations, Free)
-        x = at_rest(self.variations, state.x)
-        sides, u = self.film.sides(x), (x - base)[self.film.interior].ravel()
-        return Relaxed(self, x, u, sides, self.film.gradient(sides))
-
     def _descend(
-        self, base: FloatArray, state: Relaxed, force: FloatArray, inverse: Condensation
-    ) -> Relaxed:
+        self, base: FloatArray, state: FilmAtRest, force: FloatArray, inverse: Condensation
+    ) -> FilmAtRest:
         """Return the film after one Newton step, shortened until the area falls."""
         step = -inverse.solve(force)
         slope = float(force @ step)
         for _ in range(20):
             after = self._at(base, state.u + step)
             small = abs(slope) < 1e-15 * state.area
-            if after and (small or self.film.change(state.x, after.x) <= 0.1 * slope):
+            if after and (small or self.tiling.change(state.x, after.x) <= 0.1 * slope):
                 return after
             step, slope = 0.5 * step, 0.5 * slope
         raise LinAlgError("no step makes the film smaller")
 
-    def unfolded(self, sides: Sides) -> bool:
-        """Return whether every triangle of a film has the side up that the chart's has."""
-        turned = (sides.normals * self.sides.normals).sum(axis=1)
-        return bool((sides.areas > 0).all() and (turned > _FOLDED).all())
+
+@dataclass(frozen=True)
+class FreeFilm(LocalFilm):
+    """A film whose vertices inside are free: a discrete minimal surface."""
+
+    variations: FreeInterior
+
+    @property
+    def is_free(self) -> bool:
+        """Whether its vertices are free to move: they are."""
+        return True
+
+    def is_central(self, sides: TriangleGeometry) -> bool:
+        """Return whether the film is where it was made: it is as good anywhere."""
+        return True
+
+    def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
+        x = at_rest(self.variations, state.x)
+        sides, u = self.tiling.sides(x), (x - base)[self.tiling.interior].ravel()
+        return FilmAtRest(self, x, u, sides, self.tiling.gradient(sides))
 
 
-def chart_at(film: AreaFilm, x: FloatArray, free: bool = False) -> Chart:
+def local_film(tiling: Tiling, x: FloatArray, free: bool = False) -> LocalFilm:
     """Return the chart at a shape (n_v, 3), which is brought near to rest first.
 
     free : whether vertices inside may move freely, which takes a discrete minimal surface
@@ -276,15 +297,17 @@ def chart_at(film: AreaFilm, x: FloatArray, free: bool = False) -> Chart:
     Re-weighting: the film that is harmonic with the cotangent weights of the last one has
     no more area (Pinkall and Polthier 1993).
     """
-    sides = film.sides(x)
+    sides = tiling.sides(x)
     for _ in range(_REWEIGHTINGS):
-        following = follower(film, sides)
-        after = following.extend(x[film.loop])
-        if film.change(x, after) > -_NEAR * sides.areas.sum():
+        following = follower(tiling, sides)
+        after = following.extend(x[tiling.loop])
+        if tiling.change(x, after) > -_NEAR * sides.areas.sum():
             break
-        x, sides = after, film.sides(after)
+        x, sides = after, tiling.sides(after)
     else:
-        following = follower(film, sides)
-    normals = film.vertex_normals(sides)[film.interior]
-    variations = Free(film) if free else along_normals(film, x, normals)
-    return Chart(film, x, sides, normals, variations, following)
+        following = follower(tiling, sides)
+    normals = tiling.vertex_normals(sides)[tiling.interior]
+    if free:
+        return FreeFilm(tiling, x, sides, normals, following, FreeInterior(tiling))
+    heights = normal_heights(tiling, x, normals)
+    return HeightsFilm(tiling, x, sides, normals, following, heights)

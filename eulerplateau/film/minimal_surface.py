@@ -14,46 +14,44 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import AreaFilm
-from eulerplateau.film.free_moves import ROUNDING, Free, smaller
-from eulerplateau.film.repair import flipped
+from eulerplateau.film.free_moves import ROUNDING, FreeInterior, smaller
+from eulerplateau.film.repair import delaunay_flips
+from eulerplateau.film.tiling import LIMITS, Tiling
 
 _STEPS = 300
 # The first stiffness against sliding.
 _SHIFT = 1e-5
 # Sine of the tilt up to which triangles count as flat: sliding then costs nothing.
 _FLAT = 1e-6
-# Degrees: thinner triangles are on their way to vanish.
-_VANISHING = 5.0
 
 
-def is_flat(film: AreaFilm, x: FloatArray) -> bool:
+def is_flat(tiling: Tiling, x: FloatArray) -> bool:
     """Return whether a film (n_v, 3) lies in a plane."""
-    normals = film.sides(x).normals
+    normals = tiling.sides(x).normals
     tilted = np.cross(normals, normals.mean(axis=0))
     return float(np.abs(tilted).max(initial=0.0)) < _FLAT
 
 
-def minimal(film: AreaFilm, x: FloatArray) -> tuple[AreaFilm, FloatArray] | None:
+def find_minimal_surface(tiling: Tiling, x: FloatArray) -> tuple[Tiling, FloatArray] | None:
     """Return the discrete minimal surface near a film (n_v, 3) on the same loop.
 
     With Delaunay's triangles; None where there is none but with vanishing triangles.
     """
-    film = flipped(film, x)
-    free, shift = Free(film), _SHIFT
+    tiling = delaunay_flips(tiling, x)
+    free, shift = FreeInterior(tiling), _SHIFT
     for _ in range(_STEPS):
-        sides = film.sides(x)
-        if sides.smallest_angle < _VANISHING:
+        sides = tiling.sides(x)
+        if sides.smallest_angle < LIMITS.vanishing:
             return None
-        force = free.work(film.gradient(sides))
+        force = free.work(tiling.gradient(sides))
         error = float(np.abs(force).max(initial=0.0))
         if error <= ROUNDING * float(np.abs(sides.edges).max()):
-            return film, x
+            return tiling, x
         try:
             x, shift = smaller(free, x, sides, force, shift)
         except LinAlgError:
             return None
-        better = flipped(film, x)
-        if better is not film:
-            film, free = better, Free(better)
+        better = delaunay_flips(tiling, x)
+        if better is not tiling:
+            tiling, free = better, FreeInterior(better)
     return None

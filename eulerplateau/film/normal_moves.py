@@ -1,6 +1,6 @@
 """The displacements by which a film is varied, and what its second variation is by them.
 
-Of its interior they are the heights along normals (`AlongNormals`), or all there are
+Of its interior they are the heights along normals (`NormalHeights`), or all there are
 (free.py); of its loop all. What is inside is eliminated.
 """
 
@@ -13,9 +13,9 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.area import AreaFilm, Sides
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.elimination import Elimination, plan, summed
+from eulerplateau.film.tiling import Tiling, TriangleGeometry
 
 # Width of the strip, in L: a circle's radius is 0.16. Where it reaches the middle between
 # two strands those on either side follow different ones, the less the better.
@@ -23,7 +23,7 @@ _WIDTH = 0.1
 AXES = np.arange(3)
 
 
-class Variations(Protocol):
+class InteriorUnknowns(Protocol):
     """How the interior of a film may move: n_u unknowns."""
 
     @property
@@ -37,7 +37,7 @@ class Variations(Protocol):
         """Return what a gradient (n_v, 3) is by the unknowns (n_u,)."""
 
     def condense(self, blocks: FloatArray) -> Condensation:
-        """Eliminate the unknowns of a Hessian, given by its blocks (m, 3, 3) of film.pairs.
+        """Eliminate the unknowns of a Hessian, given by its blocks (m, 3, 3) of pairs.
 
         What remains is 3 n_b x 3 n_b. Raises LinAlgError unless the area resists them.
         """
@@ -47,7 +47,7 @@ class Variations(Protocol):
 
 
 @dataclass(frozen=True)
-class AlongNormals:
+class NormalHeights:
     """Displacements dx_v = n_v u_v + w_v dx_b, u the heights inside, b the leader of v.
 
     A strip of the film follows the loop. In the continuum the second variation with the
@@ -67,7 +67,7 @@ class AlongNormals:
         w: 1 on the loop, falling to 0 smoothly across the strip.
     """
 
-    film: AreaFilm
+    tiling: Tiling
     normals: FloatArray
     leader: IntArray
     weight: FloatArray
@@ -75,27 +75,27 @@ class AlongNormals:
     @property
     def size(self) -> int:
         """One for each vertex inside."""
-        return len(self.film.interior)
+        return len(self.tiling.interior)
 
     def displaced(self, u: FloatArray) -> FloatArray:
         """Return n u (n_i, 3)."""
-        return u[:, None] * self.normals[self.film.interior]
+        return u[:, None] * self.normals[self.tiling.interior]
 
     def work(self, gradient: FloatArray) -> FloatArray:
         """Return n . g (n_i,)."""
-        inside = self.film.interior
+        inside = self.tiling.interior
         along: FloatArray = (gradient[inside] * self.normals[inside]).sum(axis=1)
         return along
 
-    def stiffness(self, sides: Sides) -> Condensation:
+    def stiffness(self, sides: TriangleGeometry) -> Condensation:
         """Factorise n . H n (n_i, n_i); LinAlgError unless it is positive definite."""
-        entries = self.film.normal_hessian(sides, self.normals).data
+        entries = self.tiling.normal_hessian(sides, self.normals).data
         return factorise(self._inside, entries[self._chosen[0]])
 
     def condense(self, blocks: FloatArray) -> Condensation:
         """Eliminate the heights."""
         heights, coupling, loop = self._chosen
-        i, k = self.film.pairs
+        i, k = self.tiling.pairs
         along = self._along(blocks)
         up = np.einsum("pc,pc->p", along[heights], self.normals[k[heights]])
         across = self.weight[k[coupling], None] * along[coupling]
@@ -107,22 +107,22 @@ class AlongNormals:
 
     def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
         """Return n . H m (n_i,)."""
-        i, k = self.film.pairs
+        i, k = self.tiling.pairs
         pull = np.einsum("pc,pc->p", self._along(blocks), moved[k])
-        return summed(i, pull, self.film.n_v)[self.film.interior]
+        return summed(i, pull, self.tiling.n_v)[self.tiling.interior]
 
     def _along(self, blocks: FloatArray) -> FloatArray:
         """Return n_i . H_ik (m, 3)."""
         along: FloatArray = np.einsum(
-            "pc,pcd->pd", self.normals[self.film.pairs[0]], blocks
+            "pc,pcd->pd", self.normals[self.tiling.pairs[0]], blocks
         )
         return along
 
     @cached_property
     def _chosen(self) -> tuple[IntArray, IntArray, IntArray]:
         """Which pairs couple heights, a height and the loop, the loop and the loop."""
-        i, k = self.film.pairs
-        inside = is_inside(self.film)
+        i, k = self.tiling.pairs
+        inside = is_inside(self.tiling)
         follows = self.weight > 0
         return (
             np.flatnonzero(inside[i] & inside[k]),
@@ -132,52 +132,52 @@ class AlongNormals:
 
     @cached_property
     def _inside(self) -> Elimination:
-        heights, number = self._chosen[0], numbers(self.film)
-        i, k = self.film.pairs
+        heights, number = self._chosen[0], numbers(self.tiling)
+        i, k = self.tiling.pairs
         none = np.zeros(0, dtype=np.int64)
-        return plan(number[i[heights]], number[k[heights]], self.film.pieces, none)
+        return plan(number[i[heights]], number[k[heights]], self.tiling.pieces, none)
 
     @cached_property
     def _elimination(self) -> Elimination:
-        film, number, (heights, coupling, loop) = (
-            self.film,
-            numbers(self.film),
+        tiling, number, (heights, coupling, loop) = (
+            self.tiling,
+            numbers(self.tiling),
             self._chosen,
         )
-        i, k = film.pairs
-        n_i = len(film.interior)
+        i, k = tiling.pairs
+        n_i = len(tiling.interior)
         on_loop = n_i + 3 * self.leader[:, None] + AXES
         kept_row = np.repeat(on_loop[i[loop]], 3, axis=1)
         kept_column = np.tile(on_loop[k[loop]], 3)
         row = [number[i[heights]], np.repeat(number[i[coupling]], 3), kept_row.ravel()]
         column = [number[k[heights]], on_loop[k[coupling]].ravel(), kept_column.ravel()]
-        kept = np.arange(n_i, n_i + 3 * len(film.loop))
-        return plan(np.concatenate(row), np.concatenate(column), film.pieces, kept)
+        kept = np.arange(n_i, n_i + 3 * len(tiling.loop))
+        return plan(np.concatenate(row), np.concatenate(column), tiling.pieces, kept)
 
 
-def along_normals(film: AreaFilm, x: FloatArray, normals: FloatArray) -> AlongNormals:
+def normal_heights(tiling: Tiling, x: FloatArray, normals: FloatArray) -> NormalHeights:
     """Return the variations of a shape x (n_v, 3) with normals inside (n_i, 3)."""
     from scipy.spatial import cKDTree  # slow to load, and only soap films need it
 
-    loop, inside = film.loop, film.interior
+    loop, inside = tiling.loop, tiling.interior
     distance, nearest = cKDTree(x[loop]).query(x[inside])
-    directions, weight = np.zeros((film.n_v, 3)), np.ones(film.n_v)
+    directions, weight = np.zeros((tiling.n_v, 3)), np.ones(tiling.n_v)
     directions[inside] = normals
-    leader = np.zeros(film.n_v, dtype=np.int64)
+    leader = np.zeros(tiling.n_v, dtype=np.int64)
     leader[loop], leader[inside] = np.arange(len(loop)), nearest
     weight[inside] = np.square(np.maximum(1 - distance / _WIDTH, 0.0))
-    return AlongNormals(film, directions, leader, weight)
+    return NormalHeights(tiling, directions, leader, weight)
 
 
-def is_inside(film: AreaFilm) -> IntArray:
+def is_inside(tiling: Tiling) -> IntArray:
     """Return whether each vertex (n_v,) is inside."""
-    found = np.zeros(film.n_v, dtype=bool)
-    found[film.interior] = True
+    found = np.zeros(tiling.n_v, dtype=bool)
+    found[tiling.interior] = True
     return found
 
 
-def numbers(film: AreaFilm) -> IntArray:
+def numbers(tiling: Tiling) -> IntArray:
     """Return the place of each vertex (n_v,) among those inside, then those of the loop."""
-    number = np.empty(film.n_v, dtype=np.int64)
-    number[np.concatenate([film.interior, film.loop])] = np.arange(film.n_v)
+    number = np.empty(tiling.n_v, dtype=np.int64)
+    number[np.concatenate([tiling.interior, tiling.loop])] = np.arange(tiling.n_v)
     return number

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import AreaFilm
 from eulerplateau.film.follow_kernels import smallest_angle, spread_inside
-from eulerplateau.film.interior import THIN
-from eulerplateau.film.plane import PlaneFilm
-from eulerplateau.film.repair import carried, repaired
+from eulerplateau.film.repair import carry_along, mend_triangles
+from eulerplateau.film.tiling import LIMITS, Tiling
+from eulerplateau.loop import strands_meet
 
 # With fewer vertices inside, per vertex of the loop, no mesh has good triangles along it.
 _FEW = 0.25
@@ -22,43 +21,49 @@ _LIMIT = 500
 _REPAIRED = 1.5
 
 
-def carried_in_plane(
-    film: PlaneFilm, x: FloatArray, polygon: FloatArray, spanned: bool
-) -> tuple[AreaFilm, FloatArray]:
+def carry_in_plane(
+    tiling: Tiling, x: FloatArray, polygon: FloatArray, axes: FloatArray
+) -> tuple[Tiling, FloatArray]:
     """Return the triangles, and the flat shape (n_v, 3) after its loop has moved.
 
-    x : (n_v, 3); polygon : (n_b, 2), where the loop has moved to. Repaired where triangles
-    have become thin, unless no disk is `spanned`, or the mesh has so few vertices inside
-    that they are thin in any case.
+    Triangles are repaired where they have become thin, unless strands of the loop meet, so
+    that no disk is spanned, or the mesh has so few vertices inside that they are thin in
+    any case.
+
+    Parameters
+    ----------
+    x : (n_v, 3) float, in the plane through the origin along `axes`
+    polygon : (n_b, 2) float, where the loop has moved to
+    axes : (2, 3) float, orthonormal
     """
-    soap = film.soap
-    start = np.ascontiguousarray(x @ film.axes.T)
-    mendable = spanned and len(soap.interior) >= _FEW * len(soap.loop)
+    start = np.ascontiguousarray(x @ axes.T)
+    enough = len(tiling.interior) >= _FEW * len(tiling.loop)
+    mendable = enough and not strands_meet(polygon)
     best, angle = start, -np.inf
     for steps in _STEPS if mendable else _STEPS[:1]:
-        flat = _followed(soap, start, polygon, steps)
-        reached = np.degrees(smallest_angle(flat, soap.triangles))
+        flat = _followed(tiling, start, polygon, steps)
+        reached = np.degrees(smallest_angle(flat, tiling.triangles))
         if reached > angle:
             best, angle = flat, reached
-        if reached >= THIN:
+        if reached >= LIMITS.thin:
             break
     if mendable and not angle > 0.0:
-        return carried(soap, film.flattened(x), polygon @ film.axes)
-    moved = best @ film.axes
-    if mendable and angle < THIN:
-        return repaired(soap, moved, _REPAIRED * THIN)
-    return soap, moved
+        return carry_along(tiling, x @ axes.T @ axes, polygon @ axes)
+    moved = best @ axes
+    if mendable and angle < LIMITS.thin:
+        return mend_triangles(tiling, moved, _REPAIRED * LIMITS.thin)
+    return tiling, moved
 
 
 def _followed(
-    soap: AreaFilm, start: FloatArray, polygon: FloatArray, steps: int
+    tiling: Tiling, start: FloatArray, polygon: FloatArray, steps: int
 ) -> FloatArray:
     """Return the vertices (n_v, 2) after their loop has moved in so many equal steps."""
     x = start
     for left in range(steps, 0, -1):
         move = np.zeros_like(x)
-        move[soap.loop] = (polygon - x[soap.loop]) / left
-        spread_inside(x, soap.triangles, soap.interior, move, _SMALL, _LIMIT)
+        move[tiling.loop] = (polygon - x[tiling.loop]) / left
+        spread_inside(x, tiling.triangles, tiling.interior, move, _SMALL, _LIMIT)
         x = x + move
-    x[soap.loop] = polygon
+    x[tiling.loop] = polygon
     return x

@@ -1,19 +1,20 @@
-"""Films as edge weights: which quadratic energy the triangulated disk carries."""
+"""Films of fixed edge weights: their energy is a quadratic form of the positions."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 import numpy as np
 from scipy.sparse import csc_array
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
-from eulerplateau.film.area import AreaFilm, area
-from eulerplateau.film.load import SPRING_LOAD, TENSION
+from eulerplateau.film.condensation import Condensation, condense
+from eulerplateau.film.load import SPRING_LOAD, TENSION, Load
+from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible
 from eulerplateau.loop.kernels import film_energy_gradient
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import DiskMesh, Shape
 
 # Cotangents are as large as a triangle is thin; of this size they leave the weights of the
 # triangles around it four digits.
@@ -21,44 +22,159 @@ _THINNEST = 1e-12
 
 
 @dataclass(frozen=True)
-class Film:
+class QuadraticFilm:
     """A film whose energy is load * sum_e w_e |e|^2; which load, load.py says.
 
     Attributes
     ----------
     edges : (m, 2) int
     weights : (m,) float
-    tension_per_load : float
-        Effective sigma L^3 / alpha per unit of load.
+    rest : the shape it is tied to
+    interior : (n_v - n_b,) int
+    load : the load, with its names
     """
 
     edges: IntArray
     weights: FloatArray
-    tension_per_load: float
+    rest: Shape
+    interior: IntArray
+    load: Load
 
-    def laplacian(self, n_v: int) -> csc_array:
+    def laplacian(self) -> csc_array:
         """Return the weighted graph Laplacian (n_v, n_v): energy = load * tr(x^T L x)."""
         i, j = self.edges.T
         w = self.weights
         rows = np.concatenate([i, j, i, j])
         columns = np.concatenate([j, i, i, j])
         values = np.concatenate([-w, -w, w, w])
+        n_v = len(self.rest.x)
         return csc_array((values, (rows, columns)), shape=(n_v, n_v))
 
-    def energy_gradient(self, x: FloatArray, load: float) -> tuple[float, FloatArray]:
-        """Return the film's energy and its gradient (n_v, 3) at x (n_v, 3)."""
-        gradient = np.zeros_like(x)
-        energy = film_energy_gradient(x, self.edges, load * self.weights, gradient)
+    @property
+    def dimension(self) -> int:
+        """Coordinates of its loops: 3, in space."""
+        return 3
+
+    def energy_gradient(self, shape: Shape, load: float) -> tuple[float, FloatArray]:
+        """Return the film's energy and its gradient (n_v, 3) on a shape."""
+        gradient = np.zeros_like(shape.x)
+        weights = load * self.weights
+        energy = film_energy_gradient(shape.x, self.edges, weights, gradient)
         return energy, gradient
 
+    def forces(self, shape: Shape) -> FloatArray:
+        """Return the forces (n_v, 3) of unit load: the whole gradient."""
+        return self.energy_gradient(shape, 1.0)[1]
 
-def springs(mesh: DiskMesh) -> Film:
+    def prepared(self, shape: Shape) -> Shape:
+        """Return the shape as it is: springs span any."""
+        return shape
+
+    def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
+        """Return the film at rest on a loop (n_b, 3)."""
+        return self._eliminated.shape(x_loop)
+
+    def of_loop(self, near: Shape) -> QuadraticOfLoop:
+        """Return the film as a function of its loop, the same near every shape."""
+        return self._eliminated
+
+    @cached_property
+    def _eliminated(self) -> QuadraticOfLoop:
+        condensed = condense(self.laplacian(), self.rest.loop, self.interior)
+        return QuadraticOfLoop(self.rest, condensed)
+
+    def slide(self, loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+        """Return None: the rest mesh resists sliding."""
+        return None
+
+    def pinched(self, shape: Shape, loop: Loop) -> bool:
+        """Return False: springs may cross each other."""
+        return False
+
+
+@dataclass(frozen=True)
+class QuadraticOfLoop:
+    """A film of fixed weights with its interior eliminated exactly (condensation.py)."""
+
+    rest: Shape
+    condensed: Condensation
+
+    def project(self, x: FloatArray) -> FloatArray:
+        """Return the positions (n, 3) as they are."""
+        return x
+
+    def lift(self, x_loop: FloatArray) -> FloatArray:
+        """Return the loop (n_b, 3) as it is."""
+        return x_loop
+
+    def shape(self, x_loop: FloatArray) -> Shape:
+        """Return the film at rest on a loop (n_b, 3)."""
+        return self.rest.moved(self.condensed.extend(x_loop))
+
+    def force(self, x_loop: FloatArray) -> FloatArray:
+        """Return 2 S x_b (n_b, 3)."""
+        return self.condensed.force(x_loop)
+
+    def displacement(self, x_loop: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows a move of its loop (n_b, 3)."""
+        return self.condensed.extend(moved)
+
+    def energy(self, loop: Loop, load: float) -> LoopEnergy:
+        """Return bending plus load * tr(x_b^T S x_b)."""
+        film = Stiffness(self.condensed.stiffness, load)
+        return inextensible(loop, film, partial(free_motions, loop, slides=False))
+
+    def made_at(self, x_loop: FloatArray) -> bool:
+        """Return True: it is the same everywhere."""
+        return True
+
+    def renewed(self, x_loop: FloatArray) -> QuadraticOfLoop:
+        """Return the same."""
+        return self
+
+    def released(self, x_loop: FloatArray) -> QuadraticOfLoop:
+        """Return the same: its vertices are where the weights have them."""
+        return self
+
+
+@dataclass(frozen=True)
+class Stiffness(Term):
+    """load * tr(x^T S x) of a loop x (n, d), S = `stiffness` (n, n) symmetric."""
+
+    stiffness: FloatArray
+    load: float
+
+    @cached_property
+    def rounding(self) -> float:
+        """What rounding alone leaves of the force, per unit of position: eps |2 load S|."""
+        largest = float(np.abs(self.stiffness).sum(axis=1).max())
+        return float(np.finfo(np.float64).eps) * 2 * abs(self.load) * largest
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return 2 load S x (n, d)."""
+        return 2 * self.load * (self.stiffness @ x)
+
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return 2 load S (n, n)."""
+        return 2 * self.load * self.stiffness
+
+    def change(self, x: FloatArray, step: FloatArray) -> float:
+        """Return the change of a quadratic form: its gradient half-way times the step."""
+        return float(np.vdot(step, self.force(x + 0.5 * step)))
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return the derivative of the force by the load."""
+        return 2 * (self.stiffness @ x) if parameter == "load" else None
+
+
+def springs(mesh: DiskMesh) -> QuadraticFilm:
     """Return the paper's film: one zero-rest-length spring per interior edge."""
     edges = mesh.interior_edges
-    return Film(edges, np.ones(len(edges)), SPRING_LOAD.tension_per_load)
+    weights = np.ones(len(edges))
+    return QuadraticFilm(edges, weights, mesh.shape, mesh.interior, SPRING_LOAD)
 
 
-def dirichlet(mesh: DiskMesh) -> Film:
+def dirichlet(mesh: DiskMesh) -> QuadraticFilm:
     """Return Dirichlet's energy of the map from the rest mesh: cotangent weights.
 
     With the load sigma_hat, sigma_hat sum_e w_e |e|^2 = sigma_hat/2 int |grad x|^2 dA for x
@@ -86,11 +202,4 @@ def dirichlet(mesh: DiskMesh) -> Film:
     place = np.searchsorted(mesh.edges @ (mesh.n_v, 1), key)
     weights = np.zeros(len(mesh.edges))
     np.add.at(weights, place, cotangents.ravel() / 4)
-    return Film(mesh.edges, weights, TENSION.tension_per_load)
-
-
-FILMS: dict[str, Callable[[DiskMesh], Film | AreaFilm]] = {
-    "springs": springs,
-    "dirichlet": dirichlet,
-    "area": area,
-}
+    return QuadraticFilm(mesh.edges, weights, mesh.shape, mesh.interior, TENSION)

@@ -1,13 +1,13 @@
-from .energy import (
-    DENSE_LOOP as DENSE_LOOP,
-    CondensedEnergy as CondensedEnergy,
-    SoapEnergy as SoapEnergy,
-    stress_stiffness as stress_stiffness,
+from .bending import Bending as Bending, inextensible as inextensible
+from .constraint import (
+    Constraint as Constraint,
+    Lengths as Lengths,
+    Unconstrained as Unconstrained,
 )
+from .energy import LoopEnergy as LoopEnergy, Term as Term
 from .lengths import (
     LengthMetric as LengthMetric,
     close_with_lengths as close_with_lengths,
-    jacobian as jacobian,
     length_metric as length_metric,
     project_lengths as project_lengths,
 )
@@ -15,12 +15,13 @@ from .loop import (
     Loop as Loop,
     backward_differences as backward_differences,
     differences as differences,
+    strands_meet as strands_meet,
 )
 from .motions import (
     RIGID_MOTIONS as RIGID_MOTIONS,
     TURNS as TURNS,
     free_motions as free_motions,
+    remove_sliding as remove_sliding,
     rigid_motions as rigid_motions,
     sliding as sliding,
-    without as without,
 )

@@ -1,80 +1,137 @@
-"""What a solver must know of an energy of loops to minimise it."""
+"""An energy of loops: a sum of terms, with the constraint and the free motions it has.
+
+Whoever adds to the physics of the loop (a film, twist, contact, adhesion, line tension)
+writes a `Term`; what minimises and follows equilibria knows only the sum of them.
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.loop import Loop
-
-# Up to this many loop vertices the whole tangent space is searched, beyond it a subspace;
-# a rough start is then smoothed on a loop of as many.
-DENSE_LOOP = 128
+from eulerplateau.loop.constraint import Constraint
 
 
-class CondensedEnergy(Protocol):
-    """An energy of loops (n_b, 3), the film's interior eliminated."""
+class Term(ABC):
+    """One term of an energy of loops x (n, d), d = 3, or 2 in a plane.
 
-    @property
-    def loop(self) -> Loop:
-        """Rest lengths and bending."""
+    Energies are in units of alpha / L, lengths in units of L.
+    """
 
     @property
-    def dense(self) -> bool:
-        """Whether matrices of all the loop's displacements are used."""
+    def rounding(self) -> float:
+        """What rounding alone leaves of the term's force, per unit of position."""
+        return 0.0
 
-    @property
-    def slides(self) -> bool:
-        """Whether the loop's sliding along itself costs nothing but by discretisation."""
+    @abstractmethod
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return the gradient of the term (n, d)."""
 
-    @property
-    def force_rounding(self) -> float:
-        """What rounding alone leaves of a force, per unit of position."""
+    @abstractmethod
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return the second derivative, the caller's to change.
 
-    def film_force(self, x: FloatArray) -> FloatArray:
-        """Return the gradient of the film's energy (n_b, 3)."""
+        It is one matrix (n, n) for all coordinates, or a full one (d n, d n).
+        """
 
-    def lagrangian_hessian(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
-        """Return the Hessian of E + lambda . c: one for all coordinates, or for each."""
-
+    @abstractmethod
     def change(self, x: FloatArray, step: FloatArray) -> float:
-        """Return E(x + step) - E(x) with the relative precision of the difference."""
+        """Return the term at x + step less that at x, as precise as the difference."""
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return the derivative of the force (n, d) by a parameter; None if there is none.
+
+        A parameter is a number the term depends on, by the name under which a branch
+        varies it: the load of a film, the stiffness of springs.
+        """
+        return None
 
     def holds(self, x: FloatArray) -> bool:
-        """Return whether the energy is still good at x."""
-
-
-class SoapEnergy:
-    """What energies of true soap films have in common, in space and in their plane."""
-
-    loop: Loop
-
-    @property
-    def dense(self) -> bool:
-        """Whether matrices of all the loop's displacements are used: always."""
+        """Return whether the term is still good at x."""
         return True
 
-    @property
-    def slides(self) -> bool:
-        """Whether the loop may slide along itself: the film only sees its curve."""
-        return True
+
+@dataclass(frozen=True)
+class LoopEnergy:
+    """A sum of terms, and what a solver must know to minimise it.
+
+    Attributes
+    ----------
+    terms : the terms by their names, as "bending" and "film"
+    constraint : what every loop is held to: the lengths of its edges, or nothing
+    weights : (n,) float
+        The length that belongs to each vertex: |p|^2 = sum_v weights_v |p_v|^2.
+    free_motions : function of x (n, d)
+        Returns displacements that keep the constraint and cost nothing, as columns
+        (d n, m): rigid motions, sliding; none of a loop that is pinned.
+    """
+
+    terms: Mapping[str, Term]
+    constraint: Constraint
+    weights: FloatArray
+    free_motions: Callable[[FloatArray], FloatArray]
 
     @cached_property
-    def bending(self) -> FloatArray:
-        """2 B (n_b, n_b)."""
-        return 2 * self.loop.bending_matrix
+    def rounding(self) -> float:
+        """What rounding alone leaves of a force, per unit of position."""
+        return sum(term.rounding for term in self.terms.values())
+
+    def forces(self, x: FloatArray) -> list[FloatArray]:
+        """Return the gradient of each term (n, d)."""
+        return [term.force(x) for term in self.terms.values()]
+
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return the second derivative: one matrix (n, n) for all coordinates, or full."""
+        return _summed([term.hessian(x) for term in self.terms.values()], len(x))
+
+    def lagrangian_hessian(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the second derivative of the energy plus tensions . constraint.
+
+        It is that on displacements which keep the constraint to first order, and one
+        matrix (n, n) for all coordinates, or a full one (d n, d n).
+        """
+        parts = [term.hessian(x) for term in self.terms.values()]
+        return _summed([*parts, self.constraint.stiffness(x, tensions)], len(x))
+
+    def change(self, x: FloatArray, step: FloatArray) -> float:
+        """Return the energy at x + step less that at x, as precise as the difference."""
+        return sum(term.change(x, step) for term in self.terms.values())
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray:
+        """Return the derivative of the force (n, d) by a parameter of some of the terms.
+
+        Raises ValueError if no term depends on it.
+        """
+        rates = [term.rate(parameter, x) for term in self.terms.values()]
+        known = [rate for rate in rates if rate is not None]
+        if not known:
+            raise ValueError(f"no term of the energy depends on {parameter!r}")
+        return sum(known[1:], start=known[0])
+
+    def holds(self, x: FloatArray) -> bool:
+        """Return whether all terms are still good at x."""
+        return all(term.holds(x) for term in self.terms.values())
 
 
-def stress_stiffness(loop: Loop, multipliers: FloatArray) -> FloatArray:
-    """Return D^T diag(lambda / s) D (n_b, n_b): what tension adds to the stiffness."""
-    stress = multipliers / loop.rest_lengths
-    n = len(stress)
-    stiffness = np.diag(stress + np.roll(stress, 1))
-    v = np.arange(n)
-    # Not stiffness[i, j] -= ...: with three vertices an entry can occur twice.
-    np.subtract.at(stiffness, (v, (v + 1) % n), stress)
-    np.subtract.at(stiffness, ((v + 1) % n, v), stress)
-    return stiffness
+def _summed(parts: list[FloatArray], n: int) -> FloatArray:
+    """Return the sum of matrices (n, n), the same for all coordinates, and full ones."""
+    alike = [part for part in parts if len(part) == n]
+    full = [part for part in parts if len(part) > n]
+    shared = alike[0] if alike else np.zeros((n, n))
+    for part in alike[1:]:
+        shared += part
+    if not full:
+        return shared
+    total = full[0]
+    for part in full[1:]:
+        total += part
+    d = len(total) // n
+    blocks = total.reshape(n, d, n, d)
+    for axis in range(d):
+        blocks[:, axis, :, axis] += shared
+    return total

@@ -34,6 +34,11 @@ class Loop:
         stiffness: FloatArray = turn.T @ (turn / self.mean_lengths[:, None])
         return stiffness
 
+    @cached_property
+    def stiffest_row(self) -> float:
+        """The largest sum of sizes in a row of 2 B, the bending's stiffness."""
+        return 2 * float(np.abs(self.bending_matrix).sum(axis=1).max())
+
     def chords(self, x_loop: FloatArray) -> FloatArray:
         """Return e_v = x_{v+1} - x_v (n_b, 3) of loop positions (n_b, 3)."""
         return differences(x_loop)
@@ -63,16 +68,8 @@ class Loop:
         return float(np.degrees(np.arctan2(sine, cosine).max()))
 
     def strands_meet(self, x_loop: FloatArray) -> bool:
-        """Whether two stretches of the loop have come as close as neighbours are.
-
-        Where it turns by no more than 30 degrees at a vertex, a loop takes six edges to
-        turn back, four edges away from itself.
-        """
-        n = len(x_loop)
-        if n < 4 * _TURNING_BACK:
-            return False
-        x = np.ascontiguousarray(x_loop)
-        return kernels.strands_within(x, float(self.rest_lengths.max()), _TURNING_BACK)
+        """Whether two stretches of the loop have come as close as neighbours are."""
+        return strands_meet(x_loop, float(self.rest_lengths.max()))
 
     def bending_force(self, x_loop: FloatArray) -> FloatArray:
         """Return the gradient (n_b, 3) of sum_v <s_v> kappa_v^2, i.e. 2 B x.
@@ -89,6 +86,32 @@ class Loop:
         """Return J^T lambda (n_b, 3), the gradient of sum_v lambda_v c_v."""
         pull = (multipliers / self.rest_lengths)[:, None] * self.chords(x_loop)
         return -backward_differences(pull)
+
+    def tension_stiffness(self, tensions: FloatArray) -> FloatArray:
+        """Return D^T diag(lambda / s) D (n_b, n_b): what tension adds to the stiffness."""
+        stress = tensions / self.rest_lengths
+        n = len(stress)
+        stiffness = np.diag(stress + np.roll(stress, 1))
+        v = np.arange(n)
+        # Not stiffness[i, j] -= ...: with three vertices an entry can occur twice.
+        np.subtract.at(stiffness, (v, (v + 1) % n), stress)
+        np.subtract.at(stiffness, ((v + 1) % n, v), stress)
+        return stiffness
+
+
+def strands_meet(x_loop: FloatArray, reach: float | None = None) -> bool:
+    """Return whether two stretches of a loop (n, d) have come as close as neighbours are.
+
+    That is closer than `reach`, by default its longest edge. Where it turns by no more
+    than 30 degrees at a vertex, a loop takes six edges to turn back, four edges away from
+    itself.
+    """
+    n = len(x_loop)
+    if n < 4 * _TURNING_BACK:
+        return False
+    if reach is None:
+        reach = float(np.linalg.norm(differences(x_loop), axis=1).max())
+    return kernels.strands_within(np.ascontiguousarray(x_loop), reach, _TURNING_BACK)
 
 
 def differences(rows: FloatArray) -> FloatArray:

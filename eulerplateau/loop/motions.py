@@ -74,7 +74,7 @@ def free_motions(loop: Loop, x: FloatArray, slides: bool) -> FloatArray:
     return rigid if slide is None else np.column_stack([rigid, slide.ravel()])
 
 
-def without(slide: FloatArray | None, loop: Loop, forces: FloatArray) -> FloatArray:
+def remove_sliding(slide: FloatArray | None, loop: Loop, forces: FloatArray) -> FloatArray:
     """Return forces (n, d) on a loop without what would slide it along itself."""
     if slide is None:
         return forces

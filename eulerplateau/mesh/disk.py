@@ -15,6 +15,7 @@ from scipy.sparse.linalg import splu
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
+from eulerplateau.mesh.shape import Shape
 from eulerplateau.mesh.triangles import directed_edges
 
 # Below this ratio of twice the area to the longest edge squared, rounding alone decides
@@ -111,6 +112,11 @@ class DiskMesh:
     def n_b(self) -> int:
         """Number of loop vertices, which is also the number of loop edges."""
         return len(self.loop)
+
+    @cached_property
+    def shape(self) -> Shape:
+        """The disk at rest, as a shape."""
+        return Shape(self.x, self.triangles, self.loop)
 
     @cached_property
     def edges(self) -> IntArray:

@@ -14,11 +14,12 @@ from eulerplateau.mesh.curvature import (
     total_gauss_curvature,
 )
 from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.shape import Shape
 from eulerplateau.mesh.triangles import (
     area_vectors,
     smallest_angle,
 )
-from eulerplateau.mesh.waist import WaistPath, waist_twist
+from eulerplateau.mesh.waist import waist_path, waist_twist
 
 
 @dataclass(frozen=True)
@@ -55,26 +56,52 @@ class Measures:
     min_angle: float
 
 
-def measure(mesh: DiskMesh, x: FloatArray, path: WaistPath | None) -> Measures:
-    """Measure the shape `x` (n_v, 3), in units of L.
+class Measurer:
+    """Measures one shape of a disk after another.
 
-    `path` is `waist_path(mesh)`, found once for a mesh. Raises MeshError of kind "vertex"
-    if a coordinate is not finite.
+    What depends on the triangles alone, the path across the waist, is found again only
+    where a shape has others than the one before.
     """
-    crossings = self_intersections(x, mesh.triangles)
-    frame = loop_frame(mesh, x)
-    corner = x[mesh.triangles]
-    areas = np.linalg.norm(area_vectors(mesh.triangles, x), axis=1)
-    return Measures(
-        abs_kappa_n=float(np.abs(frame.kappa_n) @ frame.mean_lengths),
-        total_gauss_curvature=total_gauss_curvature(mesh, x),
-        area=float(areas.sum()),
-        max_turning=Loop(mesh.rest_lengths).largest_turning(x[mesh.loop]),
-        waist_twist=waist_twist(path, x),
-        self_intersections=crossings,
-        aspect=aspect(mesh, x),
-        min_angle=smallest_angle(corner - np.roll(corner, 1, axis=1), areas),
-    )
+
+    def __init__(self, disk: DiskMesh) -> None:
+        self._disk = disk
+        self._path = waist_path(disk)
+
+    def disk_of(self, shape: Shape) -> DiskMesh:
+        """Return the disk with a shape's triangles."""
+        if shape.triangles is not self._disk.triangles:
+            self._disk = self._disk.with_triangles(shape.triangles)
+            self._path = waist_path(self._disk)
+        return self._disk
+
+    def measure(self, shape: Shape) -> Measures:
+        """Measure a shape of the disk, in units of L.
+
+        Raises MeshError of kind "vertex" if a coordinate is not finite.
+        """
+        disk, x = self.disk_of(shape), shape.x
+        crossings = self_intersections(x, disk.triangles)
+        frame = loop_frame(disk, x)
+        corner = x[disk.triangles]
+        areas = np.linalg.norm(area_vectors(disk.triangles, x), axis=1)
+        return Measures(
+            abs_kappa_n=float(np.abs(frame.kappa_n) @ frame.mean_lengths),
+            total_gauss_curvature=total_gauss_curvature(disk, x),
+            area=float(areas.sum()),
+            max_turning=Loop(disk.rest_lengths).largest_turning(shape.x_loop),
+            waist_twist=waist_twist(self._path, x),
+            self_intersections=crossings,
+            aspect=aspect(disk, x),
+            min_angle=smallest_angle(corner - np.roll(corner, 1, axis=1), areas),
+        )
+
+
+def measure(disk: DiskMesh, shape: Shape) -> Measures:
+    """Measure a shape of a disk, in units of L.
+
+    Raises MeshError of kind "vertex" if a coordinate is not finite.
+    """
+    return Measurer(disk).measure(shape)
 
 
 def aspect(mesh: DiskMesh, x: FloatArray) -> float:

@@ -23,8 +23,8 @@ from scipy.linalg import LinAlgError
 from scipy.optimize import minimize
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import AreaFilm, PlaneFilm, carried
 from eulerplateau.loop import kernels
+from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import (
     LENGTH_TOLERANCE,
     RESIDUAL_TOLERANCE,
@@ -33,7 +33,7 @@ from eulerplateau.solvers.equilibrium import (
 )
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.start import smooth_kick
-from eulerplateau.solvers.trial_space import centred, trial_space
+from eulerplateau.solvers.trial_space import kick_axis, trial_space
 
 # A tenfold tighter residual for every update of the multipliers; the floor leaves the
 # multipliers' last update room below the accepted tolerance.
@@ -53,47 +53,43 @@ _STIFFER_THAN_BENDING = 1000.0
 
 @dataclass(frozen=True)
 class _Iterate:
-    """Positions (n_v, 3), multipliers (n_b,), the tolerance in force, iterations so far."""
+    """A shape, its tensions (n_b,), the tolerance in force, iterations so far."""
 
-    x: FloatArray
-    multipliers: FloatArray
+    shape: Shape
+    tensions: FloatArray
     tolerance: float
     iterations: int
 
 
-def solve(
+def minimise(
     problem: Problem,
-    x: FloatArray,
-    multipliers: FloatArray,
     load: float,
-    *,
-    max_iterations: int = 1_000_000,
-    observe: Callable[[FloatArray], None] = lambda x_loop: None,
+    start: Shape,
+    tensions: FloatArray | None,
+    max_iterations: int | None,
+    observe: Callable[[FloatArray], None],
 ) -> Equilibrium:
-    """Return the minimum reached from x (n_v, 3), confirmed by a kick and a new solve.
+    """Return the minimum reached from a start, confirmed by a kick and a new solve.
 
-    `observe` is shown the loop (n_b, 3) each time the base point moves.
+    `observe` is shown the loop (n_b, 3) each time the base point moves. See solving.solve.
     """
     started = time.perf_counter()
-    if (refused := problem.refused(x, load)) is not None:
-        return refused
-    film = problem.film
-    # Across the loop's plane, or along it where there is nothing else.
-    axis = 0 if isinstance(film, PlaneFilm) else 2
-    start = film.laid(x) if isinstance(film, PlaneFilm) else x
-    best = _descend(problem, start, multipliers, load, max_iterations, observe)
+    if (unusable := problem.unusable_start(start, load)) is not None:
+        return unusable
+    limit = 1_000_000 if max_iterations is None else max_iterations
+    if tensions is None:
+        tensions = np.zeros(len(start.loop))
+    best = _descend(problem, start, tensions, load, limit, observe)
     spent = best.iterations
     confirmed = False
     rng = np.random.default_rng(0)
+    axis = kick_axis(problem.film)
     for _ in range(_KICKS):
         if not best.converged:
             break
-        kick = smooth_kick(best.x[problem.loop_vertices], best.x, rng, axis)
-        left = max_iterations - spent
-        here = problem
-        if best.triangles is not None:
-            here = problem.with_triangles(best.triangles)
-        again = _descend(here, best.x + kick, best.multipliers, load, left, observe)
+        shape = best.shape
+        kicked = shape.moved(shape.x + smooth_kick(shape.x_loop, shape.x, rng, axis))
+        again = _descend(problem, kicked, best.tensions, load, limit - spent, observe)
         spent += again.iterations
         confirmed = again.converged and (
             abs(again.energy - best.energy) <= _SAME_ENERGY * abs(best.energy)
@@ -103,47 +99,31 @@ def solve(
         best = again if again.energy < best.energy or not again.converged else best
     if best.converged and not confirmed:
         best = replace(best, status=Status.SADDLE)
-    best = _with_mesh(problem, start, best)
     seconds = time.perf_counter() - started
-    return problem.judged(replace(best, iterations=spent, seconds=seconds))
-
-
-def _with_mesh(problem: Problem, start: FloatArray, found: Equilibrium) -> Equilibrium:
-    """Return a result with what became of a soap film's mesh; `start` is (n_v, 3)."""
-    film = problem.film
-    if isinstance(film, PlaneFilm) and np.isfinite(found.x).all():
-        soap, x = carried(film.soap, start, found.x[problem.loop_vertices])
-        changed = None if soap is film.soap else soap.triangles
-        return replace(found, x=x, triangles=changed)
-    if isinstance(film, AreaFilm) and found.triangles is film.triangles:
-        return replace(found, triangles=None)
-    return found
+    return problem.classified(replace(best, iterations=spent, seconds=seconds))
 
 
 def _descend(
     problem: Problem,
-    x: FloatArray,
-    multipliers: FloatArray,
+    shape: Shape,
+    tensions: FloatArray,
     load: float,
     budget: int,
     observe: Callable[[FloatArray], None],
 ) -> Equilibrium:
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
     penalty, stretched = _first_penalty(problem, load), np.inf
-    iterate, at_rest = _Iterate(x, multipliers, _FIRST_TOLERANCE, 0), True
+    iterate, at_rest = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True
     while True:
         try:
-            x = (
-                iterate.x
-                if at_rest
-                else problem.condensed.extend(iterate.x[problem.loop_vertices])
-            )
-            problem, x = centred(problem, x)
-            iterate, at_rest = replace(iterate, x=x), True
+            shape = iterate.shape if at_rest else _rested(problem, iterate.shape)
+            shape = problem.film.prepared(shape)
+            iterate, at_rest = replace(iterate, shape=shape), True
             forces, tension, scale = _forces(problem, iterate, load, penalty)
         except LinAlgError:  # no film, or no loop
             return _record(problem, iterate, load, Status.STALLED)
-        if scale == 0.0 or problem.pinched(x):  # a point; a soap film without width
+        if scale == 0.0 or problem.film.pinched(shape, problem.loop):
+            # A point; a soap film without width.
             return _record(problem, iterate, load, Status.STALLED)
         residual = float(np.abs(forces).max()) / scale
         if not np.isfinite(residual):
@@ -151,16 +131,16 @@ def _descend(
         if residual <= iterate.tolerance:
             iterate = replace(
                 iterate,
-                multipliers=tension,
+                tensions=tension,
                 tolerance=max(_TIGHTENING * iterate.tolerance, _FINAL_TOLERANCE),
             )
-            before, stretched = stretched, problem.length_error(iterate.x)
+            before, stretched = stretched, problem.length_error(shape)
             if residual <= RESIDUAL_TOLERANCE and stretched <= LENGTH_TOLERANCE:
-                at_rest = _film_at_rest(problem, iterate.x)
+                at_rest = _film_at_rest(problem, shape)
                 if at_rest:
                     return _record(problem, iterate, load, Status.CONVERGED)
                 continue
-            # Multipliers that chase a loop to and fro get nowhere: hold it faster.
+            # Tensions that chase a loop to and fro get nowhere: hold it faster.
             if stretched > max(_STRETCHED, 0.5 * before):
                 penalty *= 4
             forces, tension, scale = _forces(problem, iterate, load, penalty)
@@ -169,10 +149,16 @@ def _descend(
         after = _minimise(problem, iterate, load, penalty, forces, tension, scale)
         if after is None:
             return _record(problem, iterate, load, Status.STALLED)
-        if not np.isfinite(after.x).all():
+        if not np.isfinite(after.shape.x).all():
             return _record(problem, iterate, load, Status.NOT_FINITE)
         iterate = after
-        observe(iterate.x[problem.loop_vertices])
+        observe(iterate.shape.x_loop)
+
+
+def _rested(problem: Problem, shape: Shape) -> Shape:
+    """Return the film at rest on a shape's loop."""
+    film = problem.film.of_loop(shape)
+    return film.shape(film.project(shape.x_loop))
 
 
 def _first_penalty(problem: Problem, load: float) -> float:
@@ -186,13 +172,13 @@ def _first_penalty(problem: Problem, load: float) -> float:
     return max(even, 10.0 * load, _STIFFER_THAN_BENDING)
 
 
-def _film_at_rest(problem: Problem, x: FloatArray) -> bool:
+def _film_at_rest(problem: Problem, shape: Shape) -> bool:
     """Whether the film balances by its own measure, however little it pulls.
 
     The residual does not feel a film a million times softer than the loop.
     """
-    film = np.abs(problem.film_forces(x, 1.0))
-    inside = film[problem.interior].max(initial=0.0)
+    film = np.abs(problem.film.forces(shape))
+    inside = film[problem.disk.interior].max(initial=0.0)
     return bool(inside <= _FILM_BALANCE * film.max())
 
 
@@ -200,16 +186,17 @@ def _forces(
     problem: Problem, iterate: _Iterate, load: float, penalty: float
 ) -> tuple[FloatArray, FloatArray, float]:
     """Return grad A (n_v, 3), the tensions lambda + mu c / s (n_b,), the largest force."""
-    x = iterate.x
-    excess = problem.loop.constraint(x[problem.loop_vertices])
-    tension = iterate.multipliers + penalty * excess / problem.loop.rest_lengths
+    shape = iterate.shape
+    excess = problem.loop.constraint(shape.x_loop)
+    tension = iterate.tensions + penalty * excess / problem.loop.rest_lengths
     parts = (
-        problem.bending_energy(x)[1],
-        problem.film_forces(x, load),
-        problem.tension_force(x, tension),
+        problem.bending_energy(shape)[1],
+        load * problem.film.forces(shape),
+        problem.tension_force(shape, tension),
     )
     scale = max(float(np.abs(part).max()) for part in parts)
-    return problem.unslid(x, parts[0] + parts[1] + parts[2]), tension, scale
+    total = problem.without_sliding(shape, parts[0] + parts[1] + parts[2])
+    return total, tension, scale
 
 
 def _minimise(
@@ -227,7 +214,8 @@ def _minimise(
     the loop's stiffest bending mode, 32 / s^3, has stiffness 1 that step is a good one; in
     units of L it overshoots so far that the line search gives up.
     """
-    space = trial_space(problem, iterate.x, load)
+    shape = iterate.shape
+    space = trial_space(problem, shape, load)
     springs, weights = space.springs
     base = space.lift(forces)
     unit = float(np.sqrt(problem.loop.rest_lengths.min() ** 3 / 32))
@@ -237,11 +225,11 @@ def _minimise(
         gradient = np.empty_like(base)
         value = kernels.augmented_difference(
             moved,
-            iterate.x,
+            shape.x,
             base,
             springs,
             weights,
-            problem.loop_vertices,
+            shape.loop,
             problem.loop.rest_lengths,
             tension,
             penalty,
@@ -275,7 +263,7 @@ def _minimise(
         return None
     return replace(
         iterate,
-        x=iterate.x + space.displacement(unit * reached),
+        shape=space.reached(unit * reached),
         iterations=iterate.iterations + int(found.nit),
     )
 
@@ -283,9 +271,5 @@ def _minimise(
 def _record(
     problem: Problem, iterate: _Iterate, load: float, status: Status
 ) -> Equilibrium:
-    film = problem.film
-    return replace(
-        problem.equilibrium(iterate.x, iterate.multipliers, load, status),
-        iterations=iterate.iterations,
-        triangles=film.triangles if isinstance(film, AreaFilm) else None,
-    )
+    found = problem.equilibrium(iterate.shape, iterate.tensions, load, status)
+    return replace(found, iterations=iterate.iterations)

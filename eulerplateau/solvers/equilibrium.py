@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
-from eulerplateau.arrays import FloatArray, IntArray
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh import Shape
 
 # What an accepted equilibrium meets: force imbalance relative to the largest force, and
 # relative error of every loop edge's length.
@@ -17,6 +20,9 @@ LARGEST_LOAD = 1e100
 # its equilibrium may be exact, and says nothing about a smooth loop. The excess is for
 # rounding: a regular dodecagon turns by 30 degrees.
 RESOLVED_TURNING = 30.0 * (1 + 1e-9)
+
+# The lowest eigenvalue of the bare circle, 2 (2 pi)^4 times 36/5.
+_SOFTEST_BENDING = 22443.0
 
 
 class Status(Enum):
@@ -48,14 +54,50 @@ _ADVICE = {
 
 
 @dataclass(frozen=True)
+class Stability:
+    """Eigenvalues of the second variation, rigid motions removed.
+
+    Attributes
+    ----------
+    eigenvalues : (m,) float, ascending, in units alpha / L^3 for the norm integral |p|^2 ds
+        All of them, or of a large loop the lowest: every one that is not stable is there.
+    error_bound : float
+        What rounding can have moved each eigenvalue by.
+    """
+
+    eigenvalues: FloatArray
+    error_bound: float
+
+    @property
+    def blind(self) -> bool:
+        """Whether rounding hides eigenvalues, even as large as those of the bare loop."""
+        return self.n_neutral > 0 and self.error_bound > 0.1 * _SOFTEST_BENDING
+
+    @property
+    def n_unstable(self) -> int:
+        """Eigenvalues that are negative beyond their error bound: the Morse index."""
+        return int(np.sum(self.eigenvalues < -self.error_bound))
+
+    @property
+    def n_neutral(self) -> int:
+        """Eigenvalues that cannot be told from zero: neither stable nor unstable."""
+        return int(np.sum(np.abs(self.eigenvalues) <= self.error_bound))
+
+    @property
+    def lowest(self) -> float:
+        """The smallest eigenvalue; infinite where the loop cannot move at all."""
+        return float(self.eigenvalues[0]) if len(self.eigenvalues) else np.inf
+
+
+@dataclass(frozen=True, eq=False)
 class Equilibrium:
     """An equilibrium, or the best a solver reached. Units: lengths L, energies alpha/L.
 
     Attributes
     ----------
-    x : (n_v, 3) float
-    multipliers : (n_b,) float
-        Edge tensions lambda, the multipliers of c_v = (|e_v|^2 - s_v^2) / (2 s_v).
+    shape : the film; of a soap film its triangles may have been replaced on the way
+    tensions : (n_b,) float
+        Of the loop's edges: the multipliers of c_v = (|e_v|^2 - s_v^2) / (2 s_v).
     load : float
         The film's own (load.py).
     residual : float
@@ -64,14 +106,12 @@ class Equilibrium:
         The largest force of the film on a vertex inside over the largest on any.
     length_error : float
         max |l_v / s_v - 1| over the loop's edges.
-    n_unstable, n_neutral, lowest_eigenvalue :
-        Stability (stability.py), None where the solver does not compute it.
-    triangles : (n_t, 3) int
-        Those of a soap film whose mesh was repaired on the way; None if it was not.
+    stability : Stability or None
+        The lowest part of the spectrum; None where the solver does not compute it.
     """
 
-    x: FloatArray
-    multipliers: FloatArray
+    shape: Shape
+    tensions: FloatArray
     load: float
     energy: float
     film_energy: float
@@ -82,12 +122,53 @@ class Equilibrium:
     iterations: int
     seconds: float
     status: Status
-    n_unstable: int | None = None
-    n_neutral: int | None = None
-    lowest_eigenvalue: float | None = None
-    triangles: IntArray | None = None
+    stability: Stability | None = None
 
     @property
     def converged(self) -> bool:
         """Whether the tolerances are met."""
         return self.status is Status.CONVERGED
+
+    @property
+    def is_minimum(self) -> bool:
+        """Whether it is an equilibrium of which it is known that no mode is unstable."""
+        return self.converged and self.n_unstable == 0
+
+    @property
+    def n_unstable(self) -> int | None:
+        """The Morse index; None where the solver does not compute it."""
+        return None if self.stability is None else self.stability.n_unstable
+
+    @property
+    def n_neutral(self) -> int | None:
+        """Eigenvalues that cannot be told from zero; None where nobody has looked."""
+        return None if self.stability is None else self.stability.n_neutral
+
+    @property
+    def lowest_eigenvalue(self) -> float | None:
+        """The smallest eigenvalue; None where the solver does not compute it."""
+        return None if self.stability is None else self.stability.lowest
+
+    def __repr__(self) -> str:
+        """Return one line: load, energy, status, Morse index."""
+        index = "" if self.n_unstable is None else f", {self.n_unstable} unstable"
+        return (
+            f"<Equilibrium at load {self.load:.6g}: energy {self.energy:.9g}, "
+            f"{self.status.value}{index}, residual {self.residual:.1e}>"
+        )
+
+
+def with_stability(found: Equilibrium, stability: Stability | None) -> Equilibrium:
+    """Return a result with its stability, and the status that follows from it."""
+    if stability is None:
+        return found
+    # A stall with balanced forces is an equilibrium all the same, if it is a minimum; and
+    # rounding that leaves forces unbalanced on a very fine loop is a stall, as is rounding
+    # that leaves nobody able to say whether it is a minimum.
+    certain = found.residual <= RESIDUAL_TOLERANCE and not stability.blind
+    status = found.status
+    if status is Status.STALLED and certain:
+        status = Status.CONVERGED if stability.n_unstable == 0 else Status.SADDLE
+    elif status is Status.CONVERGED and not certain:
+        status = Status.STALLED
+    return replace(found, status=status, stability=stability)

@@ -1,8 +1,8 @@
 """Newton on the loop: the film's interior eliminated, an iterate is a loop.
 
-With a film of fixed weights the interior is eliminated exactly and once
-(condensation.py); a soap film's at each step, near the last shape (chart.py). descent.py
-does the rest. A rough start of a large loop is smoothed on a coarse loop first.
+With a film of fixed weights the interior is eliminated exactly and once (quadratic.py); a
+soap film's at each step, near the last shape (soap.py); a film kept in its plane has no use
+for one (in_plane/). Which is the case is asked here and nowhere else.
 
 The iteration ends where rounding begins. That of the positions alone unbalances the forces
 by about eps / h^3 for edges of length h, relative to the largest: a few 1e-7 at 1,700 loop
@@ -14,116 +14,76 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import AreaFilm, Film
-from eulerplateau.loop import DENSE_LOOP, close_with_lengths
-from eulerplateau.solvers.condensed import loop_energy
-from eulerplateau.solvers.descent import Descent, record, stability_of
-from eulerplateau.solvers.equilibrium import RESIDUAL_TOLERANCE, Equilibrium, Status
-from eulerplateau.solvers.large_loops.coarse_start import coarsen
+from eulerplateau.film import AreaFilm, Film, PlaneFilm, QuadraticFilm
+from eulerplateau.loop import Loop, LoopEnergy
+from eulerplateau.mesh import Shape
+from eulerplateau.solvers.equilibrium import Equilibrium, Status
+from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.second_variation import (
-    LoopEnergy,
-)
 
 
-def solve(
+class Search(Protocol):
+    """Looks for a minimum near a start."""
+
+    def __call__(
+        self,
+        problem: Problem,
+        start: Shape,
+        tensions: FloatArray | None,
+        load: float,
+        max_iterations: int,
+        observe: Callable[[FloatArray], None],
+    ) -> Equilibrium | None:
+        """Return what it comes to; None if no loop, or no film on it, is near."""
+
+
+def minimise(
     problem: Problem,
-    x: FloatArray,
-    multipliers: FloatArray,
     load: float,
-    *,
-    max_iterations: int = 500,
-    observe: Callable[[FloatArray], None] = lambda x_loop: None,
+    start: Shape,
+    tensions: FloatArray | None,
+    max_iterations: int | None,
+    observe: Callable[[FloatArray], None],
 ) -> Equilibrium:
-    """Return the minimum reached from x (n_v, 3).
-
-    Of films with fixed weights only the loop matters; a soap film's interior is where its
-    mesh lies. Multipliers (n_b,) that belong to x save time; zeros are no harm. `observe`
-    is shown the loop (n_b, 3) after every step.
-    """
+    """Return the minimum reached from a start: see solving.solve."""
     started = time.perf_counter()
-    if (refused := problem.refused(x, load)) is not None:
-        return refused
+    if (unusable := problem.unusable_start(start, load)) is not None:
+        return unusable
+    limit = 500 if max_iterations is None else max_iterations
     try:
-        found = _found(problem, x, multipliers, load, max_iterations, observe)
+        search = _search_for(problem.film)
+        found = search(problem, start, tensions, load, limit, observe)
     except np.linalg.LinAlgError:
         found = None  # a loop that has fallen onto a line has no tensions
     if found is None:
-        unknown = np.zeros(len(problem.loop_vertices))
-        found = problem.equilibrium(x, unknown, load, Status.STALLED)
-    return problem.judged(replace(found, seconds=time.perf_counter() - started))
+        unknown = np.zeros(len(start.loop))
+        found = problem.equilibrium(start, unknown, load, Status.STALLED)
+    return problem.classified(replace(found, seconds=time.perf_counter() - started))
 
 
-def _found(
-    problem: Problem,
-    x: FloatArray,
-    multipliers: FloatArray,
-    load: float,
-    max_iterations: int,
-    observe: Callable[[FloatArray], None],
-) -> Equilibrium | None:
-    """Return what the film's own search comes to; None if no loop is near x."""
-    if isinstance(problem.film, Film):
-        return _search(problem, x, multipliers, load, max_iterations, observe)
-    # Loaded only where a film asks for it.
-    from eulerplateau.solvers.soap import search_in_plane, search_soap
-
-    if not isinstance(problem.film, AreaFilm):
-        return search_in_plane(problem, x, load, max_iterations, observe)
-    # Blocks of a hundred rows: two threads would mostly wait for each other.
-    with threadpool_limits(1, user_api="blas"):
-        return search_soap(problem, x, load, max_iterations, observe)
+def _search_for(film: Film) -> Search:
+    """Return the search that suits a film, its modules loaded now."""
+    match film:
+        case AreaFilm():
+            from eulerplateau.solvers.soap import search
+        case PlaneFilm():
+            from eulerplateau.solvers.in_plane.search import search
+        case _:
+            from eulerplateau.solvers.quadratic import search
+    return search
 
 
-def _search(
-    problem: Problem,
-    x: FloatArray,
-    multipliers: FloatArray,
-    load: float,
-    max_iterations: int,
-    observe: Callable[[FloatArray], None],
-) -> Equilibrium | None:
-    """Return what a film with fixed weights comes to; None if no loop is near x."""
-    energy = loop_energy(problem, load)
-    assert isinstance(energy, LoopEnergy)
-    x_loop = _start(energy, x[problem.loop_vertices], max_iterations)
-    if x_loop is None:
-        return None
-    descent = Descent(energy, max_iterations, observe)
-    state = descent.settled(x_loop, multipliers, 0) if multipliers.any() else None
-    status = Status.CONVERGED
-    if state is None:
-        state, status = descent.run(x_loop)
-    balanced = state.model.residual <= RESIDUAL_TOLERANCE
-    if state.stability is None and (balanced or energy.dense):
-        state = replace(state, stability=stability_of(energy, state.model))
-    return record(problem, state, load, status)
+def models_for(film: Film, loop: Loop, energy: LoopEnergy) -> Models:
+    """Return how the second variation of a film's energy is looked at."""
+    match film:
+        case QuadraticFilm():
+            from eulerplateau.solvers.quadratic import quadratic_models
 
-
-def _start(energy: LoopEnergy, x: FloatArray, max_iterations: int) -> FloatArray | None:
-    """Return a loop that keeps its lengths, near x (n_b, 3); None if there is none.
-
-    A large loop with more energy in its roughness than in its shape is smoothed first, by
-    minimising on a coarse one.
-    """
-    given = close_with_lengths(energy.loop, x)
-    if energy.dense:
-        return given
-    coarse = coarsen(energy, DENSE_LOOP)
-    nowhere = np.zeros_like(x)
-    shape = close_with_lengths(coarse.energy.loop, coarse.restrict(x))
-    if shape is None:
-        return given
-    smooth = close_with_lengths(energy.loop, coarse.prolong(shape))
-    if given is not None and (
-        smooth is None or energy.change(nowhere, given) < 2 * energy.change(nowhere, smooth)
-    ):
-        return given
-    minimum = Descent(coarse.energy, max_iterations).run(shape)[0].model.x
-    smooth = close_with_lengths(energy.loop, coarse.prolong(minimum))
-    return given if smooth is None else smooth
+            return quadratic_models(loop, energy)
+        case _:
+            return DenseModels(energy)

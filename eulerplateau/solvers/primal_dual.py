@@ -28,23 +28,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import TURNS, backward_differences, differences
-from eulerplateau.solvers.second_variation import LoopEnergy, lagrangian_hessian
+from eulerplateau.loop import TURNS, Loop, LoopEnergy, backward_differences, differences
+from eulerplateau.solvers.models import Settled
 
 # Deflation strength over the mean diagonal of H: between its soft and its stiff modes.
 _DEFLATION = 1e-3
 _LIMIT = 12
 # Fewer loop vertices have fewer degrees of freedom than U has columns to spare.
 _SMALLEST_LOOP = 8
-
-
-@dataclass(frozen=True)
-class Settled:
-    """Where the iteration settled: positions (n_b, 3), tensions (n_b,), iterations."""
-
-    x: FloatArray
-    multipliers: FloatArray
-    iterations: int
 
 
 @dataclass(frozen=True)
@@ -59,8 +50,10 @@ class _Balance:
 
 def settle(
     energy: LoopEnergy,
+    loop: Loop,
+    matrix: FloatArray,
     x: FloatArray,
-    multipliers: FloatArray,
+    tensions: FloatArray,
     limit: int,
     observe: Callable[[FloatArray], None],
 ) -> Settled | None:
@@ -68,55 +61,62 @@ def settle(
 
     Quadratically convergent, and only locally: the caller checks what it came to. Takes at
     most `limit` steps and shows the loop to `observe` after each.
+
+    Parameters
+    ----------
+    energy : bending and a film of fixed weights, of a loop that keeps its lengths
+    matrix : (n_b, n_b) float, A, its constant second derivative
+    x, tensions : (n_b, 3) and (n_b,) float, where it starts
     """
     if len(x) < _SMALLEST_LOOP:
         return None
-    balance = _balance(energy, x, multipliers)
+    balance = _balance(energy, loop, x, tensions)
     for iteration in range(min(limit, _LIMIT) + 1):
         if balance.error <= balance.rounding:
-            return Settled(x, multipliers, iteration)
+            return Settled(x, tensions, iteration)
         if iteration == limit:
             break
         try:
-            step, tension = _step(energy, x, multipliers, balance)
+            step, tension = _step(loop, matrix, x, tensions, balance)
         except np.linalg.LinAlgError:
             return None
-        x, multipliers = x + step, multipliers + tension
+        x, tensions = x + step, tensions + tension
         observe(x)
-        after = _balance(energy, x, multipliers)
+        after = _balance(energy, loop, x, tensions)
         if not after.error < max(1.0, 10 * balance.error):
             return None
         # Quadratic convergence ends where rounding begins: then the error stops falling.
         if after.error < 1e-10 and after.error > 0.25 * balance.error:
-            return Settled(x, multipliers, iteration + 1)
+            return Settled(x, tensions, iteration + 1)
         balance = after
     return None
 
 
-def _balance(energy: LoopEnergy, x: FloatArray, multipliers: FloatArray) -> _Balance:
-    loop = energy.loop
-    parts = (
-        loop.bending_force(x),
-        energy.film @ x,
-        loop.tension_force(x, multipliers),
-    )
+def _balance(
+    energy: LoopEnergy, loop: Loop, x: FloatArray, tensions: FloatArray
+) -> _Balance:
+    parts = [*energy.forces(x), loop.tension_force(x, tensions)]
     scale = max(float(np.abs(part).max()) for part in parts)
-    forces, excess = parts[0] + parts[1] + parts[2], loop.constraint(x)
+    forces, excess = sum(parts[1:], start=parts[0]), loop.constraint(x)
     error = max(
         float(np.abs(forces).max()) / scale,
         float(np.abs(excess / loop.rest_lengths).max()),
     )
-    rounding = max(energy.force_rounding * float(np.abs(x).max()) / scale, 1e-15)
+    rounding = max(energy.rounding * float(np.abs(x).max()) / scale, 1e-15)
     return _Balance(forces, excess, error, rounding)
 
 
 def _step(
-    energy: LoopEnergy, x: FloatArray, multipliers: FloatArray, balance: _Balance
+    loop: Loop,
+    matrix: FloatArray,
+    x: FloatArray,
+    tensions: FloatArray,
+    balance: _Balance,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the Newton step: displacement (n_b, 3) and change of the tensions (n_b,)."""
-    n, loop = len(x), energy.loop
+    n = len(x)
     edges = loop.chords(x) / loop.rest_lengths[:, None]
-    hessian = lagrangian_hessian(energy, multipliers)
+    hessian = matrix + loop.tension_stiffness(tensions)
     rho = _DEFLATION * float(np.trace(hessian)) / n
     soft = np.linalg.qr(np.column_stack([np.ones(n), x]))[0]
     inverse: FloatArray = np.linalg.inv(hessian + rho * (soft @ soft.T))

@@ -1,4 +1,4 @@
-"""The discrete Euler-Plateau problem: film plus loop, in units L = alpha = 1.
+"""The discrete Euler-Plateau problem: disk, film and loop, in units L = alpha = 1.
 
 Minimise E(x) = load * sum_e w_e |e|^2 + sum_v <s_v> kappa_v^2 (eq. discrete-energy) subject
 to c_v(x) = (|e_v|^2 - s_v^2) / (2 s_v) = 0 for every loop edge.
@@ -7,30 +7,16 @@ to c_v(x) = (|e_v|^2 - s_v^2) / (2 s_v) = 0 for every loop edge.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film import (
-    FILMS,
-    THIN,
-    AreaFilm,
-    Chart,
-    Condensation,
-    Film,
-    PlaneFilm,
-    balance,
-    chart_at,
-    condense,
-    is_flat,
-    minimal,
-    plane_film,
-    repaired,
-)
-from eulerplateau.loop import Loop, kernels, sliding, without
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.errors import SpecError
+from eulerplateau.film import Film, make_film
+from eulerplateau.loop import Loop, kernels, remove_sliding
+from eulerplateau.mesh import DiskMesh, Shape
 from eulerplateau.solvers.equilibrium import (
     LARGEST_LOAD,
     RESOLVED_TURNING,
@@ -42,179 +28,138 @@ from eulerplateau.solvers.equilibrium import (
 _CLOSED = 1e-3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False, repr=False)
 class Problem:
     """Everything a solver needs to know.
 
     Attributes
     ----------
+    disk : the mesh at rest
     film, loop : the two energies
-    loop_vertices : (n_b,) int, cyclic
-    interior : (n_v - n_b,) int, all other vertices
-    centre : (n_v, 3) float
-        The shape near which a soap film is sought (chart.py); films of fixed weights need
-        none.
-    free : bool
-        Whether that is a discrete minimal surface, whose vertices are free to move.
     """
 
-    film: Film | AreaFilm | PlaneFilm
+    disk: DiskMesh
+    film: Film
     loop: Loop
-    loop_vertices: IntArray
-    interior: IntArray
-    centre: FloatArray | None = None
-    free: bool = False
+
+    def __init__(
+        self, disk: DiskMesh, film: str | Film = "springs", *, in_plane: bool = False
+    ) -> None:
+        """Span a disk by a film: "springs", "dirichlet", "area", or a film of one's own.
+
+        `in_plane` keeps a film of true area in the plane of its disk. Raises SpecError for
+        an unknown film, MeshError for a disk that cannot carry it.
+        """
+        if not isinstance(disk, DiskMesh):
+            problem = f"found {type(disk).__name__}; read_disk and mesh_polygon return one"
+            raise SpecError("disk", problem)
+        made = make_film(disk, film, in_plane=in_plane) if isinstance(film, str) else film
+        object.__setattr__(self, "disk", disk)
+        object.__setattr__(self, "film", made)
+        object.__setattr__(self, "loop", Loop(disk.rest_lengths))
+
+    def __repr__(self) -> str:
+        """Return one line: the film, and the size of its mesh."""
+        film = type(self.film).__name__
+        return f"<Problem: {film} on {self.disk.n_v} vertices, {self.disk.n_b} on the loop>"
 
     @property
-    def n_v(self) -> int:
-        """Number of vertices."""
-        return len(self.loop_vertices) + len(self.interior)
+    def loop_vertices(self) -> IntArray:
+        """Vertices of the loop (n_b,), cyclic."""
+        return self.disk.loop
 
-    @cached_property
-    def condensed(self) -> Condensation | Chart:
-        """The film with its interior eliminated; factorised on first use.
+    def shape(self, x: ArrayLike) -> Shape:
+        """Return the disk with its vertices at x (n_v, 3), in units of L.
 
-        Not of a film kept in its plane, which has no use for an interior.
+        Raises SpecError for another size.
         """
-        if isinstance(self.film, PlaneFilm):
-            raise TypeError("a film kept in its plane is not condensed")
-        if isinstance(self.film, AreaFilm):
-            centre = self.film.rest if self.centre is None else self.centre
-            return chart_at(self.film, centre, self.free)
-        laplacian = self.film.laplacian(self.n_v)
-        return condense(laplacian, self.loop_vertices, self.interior)
+        try:
+            positions = np.array(x, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise SpecError(
+                "start", "should be positions, three numbers a vertex"
+            ) from None
+        if positions.shape != self.disk.x.shape:
+            raise SpecError(
+                "start", f"has shape {positions.shape}; should be {self.disk.x.shape}"
+            )
+        return self.disk.shape.moved(positions)
 
-    def near(self, x: FloatArray) -> Problem:
-        """Return the problem with its film sought near a shape (n_v, 3).
-
-        Thin triangles of a soap film are replaced by better ones: `centre` is then that
-        shape with other vertices inside; of a free one by those of a minimal surface.
-        """
-        film = self.film
-        if not isinstance(film, AreaFilm):
-            return self
-        if self.free and (freed := self.freed(x)) is not self:
-            return freed
-        if film.sides(x).smallest_angle < THIN:
-            film, x = repaired(film, x)
-        return replace(self, film=film, centre=x, free=False)
-
-    def freed(self, x: FloatArray) -> Problem:
-        """Return the problem with its film sought near the minimal surface next to x.
-
-        The problem itself where there is none, and where the film is flat: then its
-        vertices may lie anywhere.
-        """
-        if not isinstance(self.film, AreaFilm) or is_flat(self.film, x):
-            return self
-        found = minimal(self.film, x)
-        if found is None:
-            return self
-        film, centre = found
-        return replace(self, film=film, centre=centre, free=True)
-
-    def at(self, x: FloatArray) -> Problem:
-        """Return the problem with its film sought near x (n_v, 3), its triangles kept."""
-        return replace(self, centre=x) if isinstance(self.film, AreaFilm) else self
-
-    def with_triangles(self, triangles: IntArray) -> Problem:
-        """Return the problem with a soap film's triangles (n_t, 3) replaced."""
-        film = self.film
-        if isinstance(film, PlaneFilm):
-            return replace(self, film=replace(film, soap=film.soap.retiled(triangles)))
-        assert isinstance(film, AreaFilm)
-        return replace(self, film=film.retiled(triangles))
-
-    def film_energy(self, x: FloatArray, load: float) -> tuple[float, FloatArray]:
-        """Return the film's energy and its gradient (n_v, 3) at x (n_v, 3)."""
-        return self.film.energy_gradient(x, load)
-
-    def film_forces(self, x: FloatArray, load: float) -> FloatArray:
-        """Return the film's forces (n_v, 3), which inside a film at rest vanish.
-
-        A soap film's are those that do work: see `harmonic.balance`.
-        """
-        if isinstance(self.film, AreaFilm):
-            return load * balance(self.film, x)
-        return self.film_energy(x, load)[1]
-
-    def bending_energy(self, x: FloatArray) -> tuple[float, FloatArray]:
-        """Return the loop's bending energy and its gradient (n_v, 3) at x (n_v, 3)."""
-        gradient = np.zeros_like(x)
+    def bending_energy(self, shape: Shape) -> tuple[float, FloatArray]:
+        """Return the loop's bending energy and its gradient (n_v, 3)."""
+        gradient = np.zeros_like(shape.x)
         energy = kernels.bending_energy_gradient(
-            x, self.loop_vertices, self.loop.rest_lengths, gradient
+            shape.x, shape.loop, self.loop.rest_lengths, gradient
         )
         return energy, gradient
 
-    def tension_force(self, x: FloatArray, multipliers: FloatArray) -> FloatArray:
-        """Return J^T lambda (n_v, 3)."""
-        force = np.zeros_like(x)
-        force[self.loop_vertices] = self.loop.tension_force(
-            x[self.loop_vertices], multipliers
-        )
+    def tension_force(self, shape: Shape, tensions: FloatArray) -> FloatArray:
+        """Return J^T lambda (n_v, 3) for the tensions lambda (n_b,) of the loop's edges."""
+        force = np.zeros_like(shape.x)
+        force[shape.loop] = self.loop.tension_force(shape.x_loop, tensions)
         return force
 
-    def residual(self, x: FloatArray, multipliers: FloatArray, load: float) -> float:
+    def residual(self, shape: Shape, tensions: FloatArray, load: float) -> float:
         """Return the imbalance of forces over the largest force, both as max norms.
 
         Infinite where a soap film is so degenerate that there is no film or no loop.
         """
-        bending, tension = self.bending_energy(x)[1], self.tension_force(x, multipliers)
+        bending = self.bending_energy(shape)[1]
+        tension = self.tension_force(shape, tensions)
         try:
-            film = self.film_forces(x, load)
-            total = self.unslid(x, bending + film + tension)
+            film = load * self.film.forces(shape)
+            total = self.without_sliding(shape, bending + film + tension)
         except LinAlgError:
             return np.inf
         scale = max(float(np.abs(f).max()) for f in (bending, film, tension))
         return float(np.abs(total).max()) / scale if scale != 0 else 0.0
 
-    def unslid(self, x: FloatArray, forces: FloatArray) -> FloatArray:
-        """Return forces (n_v, 3) without what would slide a soap film's loop along itself.
+    def without_sliding(self, shape: Shape, forces: FloatArray) -> FloatArray:
+        """Return forces (n_v, 3) less what slides the loop along itself for nothing.
 
-        See motions.sliding; films of fixed weights are tied to their rest mesh.
+        Films of fixed weights are tied to their rest mesh: their forces stay as they are.
         """
-        if isinstance(self.film, Film):
+        slide = self.film.slide(self.loop, shape.x_loop)
+        if slide is None:
             return forces
-        on_loop = self.loop_vertices
-        slide = sliding(self.loop, x[on_loop])
         rest = forces.copy()
-        rest[on_loop] = without(slide, self.loop, forces[on_loop])
+        rest[shape.loop] = remove_sliding(slide, self.loop, forces[shape.loop])
         return rest
 
-    def length_error(self, x: FloatArray) -> float:
+    def length_error(self, shape: Shape) -> float:
         """Return max |l_v / s_v - 1| over the loop's edges."""
-        return self.loop.length_error(x[self.loop_vertices])
+        return self.loop.length_error(shape.x_loop)
 
     def equilibrium(
-        self, x: FloatArray, multipliers: FloatArray, load: float, status: Status
+        self, shape: Shape, tensions: FloatArray, load: float, status: Status
     ) -> Equilibrium:
         """Record a shape with all its numbers computed by the kernels on the full mesh."""
-        film, pull = self.film_energy(x, load)
-        bending = self.bending_energy(x)[0]
+        film, pull = self.film.energy_gradient(shape, load)
+        bending = self.bending_energy(shape)[0]
         pulls = np.abs(pull).max(axis=1)
-        inside, strongest = pulls[self.interior].max(initial=0.0), pulls.max()
+        inside, strongest = pulls[self.disk.interior].max(initial=0.0), pulls.max()
         return Equilibrium(
-            x=x,
-            multipliers=multipliers,
+            shape=shape,
+            tensions=tensions,
             load=load,
             energy=film + bending,
             film_energy=film,
             bending_energy=bending,
-            residual=self.residual(x, multipliers, load),
+            residual=self.residual(shape, tensions, load),
             film_residual=float(inside / strongest) if strongest > 0.0 else 0.0,
-            length_error=self.length_error(x),
+            length_error=self.length_error(shape),
             iterations=0,
             seconds=0.0,
             status=status,
         )
 
-    def refused(self, x: FloatArray, load: float) -> Equilibrium | None:
-        """Return the record of a start (n_v, 3) no solver can work with, or None."""
-        if np.isfinite(x).all() and abs(load) <= LARGEST_LOAD:
+    def unusable_start(self, shape: Shape, load: float) -> Equilibrium | None:
+        """Return the record of a start no solver can work with, or None."""
+        if np.isfinite(shape.x).all() and abs(load) <= LARGEST_LOAD:
             return None
         return Equilibrium(
-            x=x,
-            multipliers=np.zeros(len(self.loop_vertices)),
+            shape=shape,
+            tensions=np.zeros(len(shape.loop)),
             load=load,
             energy=np.nan,
             film_energy=np.nan,
@@ -227,18 +172,7 @@ class Problem:
             status=Status.NOT_FINITE,
         )
 
-    def pinched(self, x: FloatArray) -> bool:
-        """Whether a soap film (n_v, 3) has run out of width: strands of its loop meet.
-
-        Or, in its plane, have passed each other and turned the film inside out.
-        """
-        film = self.film
-        if isinstance(film, Film):
-            return False
-        inside_out = isinstance(film, PlaneFilm) and film.energy_gradient(x, 1.0)[0] < 0
-        return inside_out or self.loop.strands_meet(x[self.loop_vertices])
-
-    def judged(self, found: Equilibrium) -> Equilibrium:
+    def classified(self, found: Equilibrium) -> Equilibrium:
         """Return `found`; UNRESOLVED if it converged to a loop that its mesh cannot carry.
 
         And PINCHED if a soap film has run out of width: between strands that meet no disk
@@ -246,20 +180,10 @@ class Problem:
         solution passes here before anybody sees it, whatever method found it.
         """
         loop = found.status is not Status.NOT_FINITE and found.length_error < _CLOSED
-        if loop and self.pinched(found.x):
+        if loop and self.film.pinched(found.shape, self.loop):
             return replace(found, status=Status.PINCHED)
         if not found.converged:
             return found
-        turning = self.loop.largest_turning(found.x[self.loop_vertices])
+        turning = self.loop.largest_turning(found.shape.x_loop)
         resolved = turning <= RESOLVED_TURNING
         return found if resolved else replace(found, status=Status.UNRESOLVED)
-
-
-def make_problem(mesh: DiskMesh, film: str = "springs", *, plane: bool = False) -> Problem:
-    """Build the problem on a mesh; `film` is a key of FILMS.
-
-    In its plane a soap film ("area") needs its loop only. Raises MeshError where there is
-    no plane to keep to.
-    """
-    made = plane_film(mesh) if plane else FILMS[film](mesh)
-    return Problem(made, Loop(mesh.rest_lengths), mesh.loop, mesh.interior)

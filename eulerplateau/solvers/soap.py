@@ -1,4 +1,4 @@
-"""Newton for true soap films: in space chart after chart, in their plane as a polygon."""
+"""Newton for true soap films in space: near one shape of the film after another."""
 
 from __future__ import annotations
 
@@ -9,154 +9,93 @@ from scipy.linalg import LinAlgError
 from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import (
-    AreaEnergy,
-    AreaFilm,
-    PlaneEnergy,
-    PlaneFilm,
-    carried,
-    carried_in_plane,
-    condense,
-)
-from eulerplateau.loop import DENSE_LOOP, close_with_lengths
-from eulerplateau.solvers.condensed import loop_energy
-from eulerplateau.solvers.descent import Descent, judged, record, stability_of
+from eulerplateau.errors import MeshError
+from eulerplateau.film import make_film
+from eulerplateau.loop import close_with_lengths
+from eulerplateau.mesh import Shape
+from eulerplateau.solvers.descent import Descent, record
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
-from eulerplateau.solvers.in_plane.newton import Flat, minimum_in_plane
+from eulerplateau.solvers.models import DenseModels
 from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.second_variation import (
-    LoopEnergy,
-)
+from eulerplateau.solvers.quadratic import quadratic_models
 
 # A soap film is sought near the last shape at most so many times in one solve.
-_CHARTS = 60
+_SHAPES = 60
 
 
-def search_soap(
+def search(
     problem: Problem,
-    x: FloatArray,
+    start: Shape,
+    tensions: FloatArray | None,
     load: float,
     max_iterations: int,
     observe: Callable[[FloatArray], None],
 ) -> Equilibrium | None:
-    """Return what a soap film comes to; None if no loop, or no film on it, is near x."""
-    x_loop = close_with_lengths(problem.loop, x[problem.loop_vertices])
+    """Return what a soap film comes to; None if no loop, or no film on it, is near.
+
+    Tensions are of no use: they follow from the loop.
+    """
+    x_loop = close_with_lengths(problem.loop, start.x_loop)
     if x_loop is None:
         return None
-    found = _charted(problem, x, x_loop, load, max_iterations, observe)
-    if found is not None:
-        return found
-    smooth = _unfolded(problem, x_loop, load, max_iterations)
-    if smooth is None:
-        return None
-    smooth_loop = smooth[problem.loop_vertices]
-    return _charted(problem, smooth, smooth_loop, load, max_iterations, observe)
+    # Blocks of a hundred rows: two threads would mostly wait for each other.
+    with threadpool_limits(1, user_api="blas"):
+        found = _near(problem, start, x_loop, load, max_iterations, observe)
+        if found is not None:
+            return found
+        smooth = _unfolded(problem, x_loop, load, max_iterations)
+        if smooth is None:
+            return None
+        return _near(problem, smooth, smooth.x_loop, load, max_iterations, observe)
 
 
 def _unfolded(
     problem: Problem, x_loop: FloatArray, load: float, max_iterations: int
-) -> FloatArray | None:
-    """Return the shape (n_v, 3) of least Dirichlet energy that a crumpled loop leads to.
+) -> Shape | None:
+    """Return the shape of least Dirichlet energy that a crumpled loop leads to.
 
     That film, tied to the mesh as it was given, can be spanned across any loop.
     """
-    film = problem.film
-    assert isinstance(film, AreaFilm)
-    laplacian = film.cotangent_laplacian(film.sides(film.rest))
+    loop, rest = problem.loop, problem.disk.shape
     try:
-        condensed = condense(laplacian, film.loop, film.interior)
-    except LinAlgError:
+        film = make_film(problem.disk, "dirichlet").of_loop(rest)
+    except (MeshError, LinAlgError):
         return None
-    loop = problem.loop
-    energy = LoopEnergy(loop, 2 * loop.bending_matrix, load * condensed.stiffness)
-    state, _ = Descent(energy, max_iterations).run(x_loop)
-    return condensed.extend(state.model.x)
+    models = quadratic_models(loop, film.energy(loop, load))
+    state, _ = Descent(models, max_iterations).run(x_loop)
+    return film.shape(state.model.x)
 
 
-def _charted(
+def _near(
     problem: Problem,
-    x: FloatArray,
+    shape: Shape,
     x_loop: FloatArray,
     load: float,
     max_iterations: int,
     observe: Callable[[FloatArray], None],
 ) -> Equilibrium | None:
-    """Return what a soap film near x (n_v, 3) on a loop comes to; None if there is none.
+    """Return what a soap film near a shape, on a loop, comes to; None if there is none.
 
-    Chart after chart, until the film is at rest in the one that is made at its own shape.
+    It is known near one shape at a time, so the descent begins again at each it comes to,
+    until it is at rest near its own.
     """
-    first = film = problem.film
-    assert isinstance(film, AreaFilm)
     spent, found = 0, None
-    for _ in range(_CHARTS):
+    for _ in range(_SHAPES):
         try:
-            film, x = carried(film, x, x_loop)
-            here = replace(problem, film=film).near(x)
-            energy = loop_energy(here, load)
-            assert isinstance(energy, AreaEnergy)
-            state, status = Descent(energy, max_iterations - spent, observe).run(x_loop)
+            shape = problem.film.prepared(problem.film.carried(shape, x_loop))
+            film = problem.film.of_loop(shape)
+            models = DenseModels(film.energy(problem.loop, load))
+            descent = Descent(models, max_iterations - spent, observe)
+            state, status = descent.run(x_loop)
         except LinAlgError:
             return None if found is None else replace(found, status=Status.STALLED)
         spent += state.iteration
         if state.stability is None:
-            state = replace(state, stability=stability_of(energy, state.model))
-        found = replace(record(here, state, load, status), iterations=spent)
-        film = here.film
-        assert isinstance(film, AreaFilm)
-        if film is not first:
-            found = replace(found, triangles=film.triangles)
-        own = energy.holds(state.model.x) and energy.at_centre(state.model.x)
-        lost = status is Status.STALLED or problem.pinched(found.x)
+            state = replace(state, stability=models.spectrum(state.model))
+        found = replace(record(problem, film, state, load, status), iterations=spent)
+        x_loop, shape = state.model.x, found.shape
+        own = models.energy.holds(x_loop) and film.made_at(x_loop)
+        lost = status is Status.STALLED or problem.film.pinched(shape, problem.loop)
         if own or lost or spent >= max_iterations:
             return found
-        x, x_loop = found.x, state.model.x
     return found
-
-
-def search_in_plane(
-    problem: Problem,
-    x: FloatArray,
-    load: float,
-    max_iterations: int,
-    observe: Callable[[FloatArray], None],
-) -> Equilibrium | None:
-    """Return what a film kept in its plane comes to; None if no loop is near x.
-
-    Where the chain's own descent gets stuck the general one takes over, on small loops.
-    """
-    film = problem.film
-    assert isinstance(film, PlaneFilm)
-    x = film.laid(x)
-    flat = close_with_lengths(problem.loop, x[problem.loop_vertices] @ film.axes.T)
-    if flat is None:
-        return None
-    energy = PlaneEnergy(problem.loop, load)
-
-    def shown(polygon: FloatArray) -> None:
-        observe(polygon @ film.axes)
-
-    minimum = minimum_in_plane(energy, flat, max_iterations, shown)
-    if minimum is not None:
-        polygon, spectrum = minimum
-        status = Status.CONVERGED
-    elif len(flat) > DENSE_LOOP:
-        return None
-    else:
-        with threadpool_limits(1, user_api="blas"):
-            state, status = Descent(energy, max_iterations, shown).run(flat)
-        polygon = Flat(state.model.x, state.model.multipliers, state.iteration)
-        spectrum = state.stability or stability_of(energy, state.model)
-    return judged(_lifted(problem, x, polygon, load, status), spectrum)
-
-
-def _lifted(
-    problem: Problem, x: FloatArray, polygon: Flat, load: float, status: Status
-) -> Equilibrium:
-    """Return the flat film (n_v, 3) on a polygon, its mesh moved along from x (n_v, 3)."""
-    film = problem.film
-    assert isinstance(film, PlaneFilm)
-    spanned = not problem.loop.strands_meet(polygon.x)
-    soap, moved = carried_in_plane(film, x, polygon.x, spanned)
-    found = problem.equilibrium(moved, polygon.multipliers, load, status)
-    changed = None if soap is film.soap else soap.triangles
-    return replace(found, iterations=polygon.iterations, triangles=changed)

@@ -15,9 +15,17 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film import AreaFilm, Chart, Film, PlaneFilm, polygon_gradient
-from eulerplateau.loop import Loop, sliding, without
+from eulerplateau.film import (
+    AreaFilm,
+    Film,
+    LocalFilm,
+    PlaneFilm,
+    QuadraticFilm,
+    polygon_gradient,
+)
+from eulerplateau.loop import Loop, remove_sliding
 from eulerplateau.loop.kernels import area_beyond_linear
+from eulerplateau.mesh import Shape
 from eulerplateau.solvers.problem import Problem
 
 
@@ -35,7 +43,7 @@ class TrialSpace(Protocol):
     def lift(self, forces: FloatArray) -> FloatArray:
         """Return a field (n_v, 3) that does the work on displacements that `forces` do.
 
-        `forces` (n_v, 3) as Problem.film_forces has them, bending and tension added.
+        `forces` (n_v, 3) as Film.forces has them, bending and tension added.
         """
 
     def displacement(self, unknown: FloatArray) -> FloatArray:
@@ -53,43 +61,47 @@ class TrialSpace(Protocol):
     def holds(self, moved: FloatArray) -> bool:
         """Return whether the film is still close enough to the base shape."""
 
+    def reached(self, unknown: FloatArray) -> Shape:
+        """Return the shape that unknowns (m,) lead to."""
 
-def centred(problem: Problem, x: FloatArray) -> tuple[Problem, FloatArray]:
-    """Return the problem and a shape (n_v, 3) to vary, a soap film's chart made there.
 
-    A rough film is brought near to rest first, a thin triangle replaced. Raises LinAlgError
-    if there is no film to be made at x.
+def trial_space(problem: Problem, shape: Shape, load: float) -> TrialSpace:
+    """Return the trial space at a shape that the film has `prepared`."""
+    loop, film = problem.loop, problem.film
+    match film:
+        case QuadraticFilm():
+            return _Everywhere(film, shape, load)
+        case PlaneFilm():
+            return _InPlane(loop, film.slide(loop, shape.x_loop), film, shape, load)
+        case AreaFilm():
+            local = film.of_loop(shape).local
+            slide = film.slide(loop, shape.x_loop)
+            return _AlongNormals(loop, slide, film, local, shape, load)
+        case _:
+            raise TypeError(f"conjugate gradients do not know how to vary {film}")
+
+
+def kick_axis(film: Film) -> int:
+    """Return the axis of the loop along which a kick is given: across its plane.
+
+    Or along it where there is nothing else.
     """
-    if not isinstance(problem.film, AreaFilm):
-        return problem, x
-    here = problem.near(x)
-    chart = here.condensed
-    assert isinstance(chart, Chart)
-    return here, chart.x
-
-
-def trial_space(problem: Problem, x: FloatArray, load: float) -> TrialSpace:
-    """Return the trial space at a shape (n_v, 3) that has been `centred`."""
-    film = problem.film
-    if isinstance(film, Film):
-        return _Everywhere(film, x, load)
-    loop, slide = problem.loop, sliding(problem.loop, x[problem.loop_vertices])
-    if isinstance(film, PlaneFilm):
-        return _InPlane(loop, slide, film, load)
-    chart = problem.condensed
-    assert isinstance(chart, Chart)
-    return _AlongNormals(loop, slide, chart, load)
+    match film:
+        case PlaneFilm():
+            return 0
+        case _:
+            return 2
 
 
 @dataclass(frozen=True)
 class _Everywhere:
-    film: Film
-    x: FloatArray
+    film: QuadraticFilm
+    shape: Shape
     load: float
 
     @property
     def size(self) -> int:
-        return self.x.size
+        return self.shape.x.size
 
     @property
     def springs(self) -> tuple[IntArray, FloatArray]:
@@ -99,7 +111,7 @@ class _Everywhere:
         return forces
 
     def displacement(self, unknown: FloatArray) -> FloatArray:
-        return unknown.reshape(self.x.shape)
+        return unknown.reshape(self.shape.x.shape)
 
     def collect(self, gradient: FloatArray) -> FloatArray:
         return gradient.ravel()
@@ -109,6 +121,9 @@ class _Everywhere:
 
     def holds(self, moved: FloatArray) -> bool:
         return True
+
+    def reached(self, unknown: FloatArray) -> Shape:
+        return self.shape.moved(self.shape.x + self.displacement(unknown))
 
 
 @dataclass(frozen=True)
@@ -127,7 +142,7 @@ class _Sliding:
 
     def pulled(self, forces: FloatArray) -> FloatArray:
         """Return forces (n_b, 3) on the loop without what `kept` makes nothing of."""
-        return without(self.slide, self.loop, forces)
+        return remove_sliding(self.slide, self.loop, forces)
 
     @property
     def springs(self) -> tuple[IntArray, FloatArray]:
@@ -136,66 +151,72 @@ class _Sliding:
 
 @dataclass(frozen=True)
 class _AlongNormals(_Sliding):
-    chart: Chart
+    film: AreaFilm
+    local: LocalFilm
+    shape: Shape
     load: float
 
     @property
     def size(self) -> int:
-        film = self.chart.film
+        film = self.film
         return 3 * len(film.loop) + len(film.interior)
 
     def lift(self, forces: FloatArray) -> FloatArray:
-        film = self.chart.film
+        film = self.film
         lifted = forces.copy()
         # The loop's forces have their share of those inside; the mesh that follows adds it.
-        lifted[film.loop] += forces[film.loop] - self.chart.carry(forces)
+        lifted[film.loop] += forces[film.loop] - self.local.carry(forces)
         return lifted
 
     def displacement(self, unknown: FloatArray) -> FloatArray:
-        chart, n = self.chart, 3 * len(self.chart.film.loop)
-        moved = chart.follow(self.kept(unknown[:n].reshape(-1, 3)))
-        moved[chart.film.interior] += unknown[n:, None] * chart.normals
+        local, n = self.local, 3 * len(self.film.loop)
+        moved = local.follow(self.kept(unknown[:n].reshape(-1, 3)))
+        moved[self.film.interior] += unknown[n:, None] * local.normals
         return moved
 
     def collect(self, gradient: FloatArray) -> FloatArray:
-        chart = self.chart
-        along = (gradient[chart.film.interior] * chart.normals).sum(axis=1)
-        return np.concatenate([self.pulled(chart.carry(gradient)).ravel(), along])
+        local = self.local
+        along = (gradient[self.film.interior] * local.normals).sum(axis=1)
+        return np.concatenate([self.pulled(local.carry(gradient)).ravel(), along])
 
     def beyond_linear(self, moved: FloatArray, gradient: FloatArray) -> float:
-        chart = self.chart
+        local = self.local
         force = np.zeros_like(gradient)
-        area = area_beyond_linear(moved, chart.x, chart.film.triangles, force)
+        area = area_beyond_linear(moved, local.x, local.tiling.triangles, force)
         gradient += self.load * force
         return self.load * float(area)
 
     def holds(self, moved: FloatArray) -> bool:
-        return self.chart.holds(self.chart.film.sides(self.chart.x + moved))
+        return self.local.holds(self.local.tiling.sides(self.local.x + moved))
+
+    def reached(self, unknown: FloatArray) -> Shape:
+        return self.shape.moved(self.shape.x + self.displacement(unknown))
 
 
 @dataclass(frozen=True)
 class _InPlane(_Sliding):
     film: PlaneFilm
+    shape: Shape
     load: float
 
     @property
     def size(self) -> int:
-        return 3 * len(self.film.soap.loop)
+        return 3 * len(self.shape.loop)
 
     def lift(self, forces: FloatArray) -> FloatArray:
         return forces
 
     def displacement(self, unknown: FloatArray) -> FloatArray:
-        moved = np.zeros((self.film.soap.n_v, 3))
-        moved[self.film.soap.loop] = self.kept(self.film.flattened(unknown.reshape(-1, 3)))
+        moved = np.zeros_like(self.shape.x)
+        moved[self.shape.loop] = self.kept(self.film.flattened(unknown.reshape(-1, 3)))
         return moved
 
     def collect(self, gradient: FloatArray) -> FloatArray:
-        return self.film.flattened(self.pulled(gradient[self.film.soap.loop])).ravel()
+        return self.film.flattened(self.pulled(gradient[self.shape.loop])).ravel()
 
     def beyond_linear(self, moved: FloatArray, gradient: FloatArray) -> float:
         # A polygon's area is quadratic in its corners.
-        loop, axes = self.film.soap.loop, self.film.axes
+        loop, axes = self.shape.loop, self.film.axes
         step = moved[loop] @ axes.T
         force = self.load * polygon_gradient(step)
         gradient[loop] += force @ axes
@@ -203,3 +224,8 @@ class _InPlane(_Sliding):
 
     def holds(self, moved: FloatArray) -> bool:
         return True
+
+    def reached(self, unknown: FloatArray) -> Shape:
+        # The mesh goes with its loop, for whoever looks at it.
+        film, moved = self.film.of_loop(self.shape), self.displacement(unknown)
+        return film.shape(film.project((self.shape.x + moved)[self.shape.loop]))

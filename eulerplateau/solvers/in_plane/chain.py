@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import PlaneEnergy, polygon_gradient
+from eulerplateau.film import polygon_gradient
 from eulerplateau.loop import Loop, slide_kernels
+from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.in_plane import kernels as plane_kernels
-from eulerplateau.solvers.spectrum import Stability
 
 # Weight of the closed chain against its energy, per 1 + load: large enough for the pivots
 # to count as the Hessian of closed chains does, and small against 1 / eps.
@@ -62,26 +62,20 @@ class Factors:
 class Chain:
     """Edges of lengths s_v (n,) that turn against each other, and the film between them."""
 
-    energy: PlaneEnergy
-
-    @property
-    def loop(self) -> Loop:
-        """Rest lengths and bending."""
-        return self.energy.loop
+    loop: Loop
+    load: float
 
     @property
     def weight(self) -> float:
         """Of the closed chain against the energy."""
-        return _WEIGHT * (1.0 + abs(self.energy.load))
+        return _WEIGHT * (1.0 + abs(self.load))
 
     def at(self, angles: FloatArray) -> Point:
         """Return the point at the edges' angles (n,)."""
         s, n = self.loop.rest_lengths, len(angles)
         units, points = np.empty((n, 2)), np.empty((n + 1, 2))
         gradient, row = np.empty(n), np.empty(n)
-        value = plane_kernels.energy_gradient(
-            angles, s, self.energy.load, units, points, gradient
-        )
+        value = plane_kernels.energy_gradient(angles, s, self.load, units, points, gradient)
         slide_kernels.slide_row(units, points, self.loop.mean_lengths, s, row)
         return Point(angles, value, units, points, gradient, row)
 
@@ -95,7 +89,7 @@ class Chain:
 
     def factors(self, point: Point, pull: FloatArray, shift: float) -> Factors:
         """Factorise the Hessian plus shift diag(s) of the chain held by a pull (2,)."""
-        s, load = self.loop.rest_lengths, self.energy.load
+        s, load = self.loop.rest_lengths, self.load
         gains = np.empty((len(s), 5))
         negative = plane_kernels.factorise(
             point.angles,
@@ -212,7 +206,7 @@ class Chain:
     def tensions(self, x: FloatArray) -> FloatArray:
         """Return the edge tensions (n,) that balance the forces at x (n, 2) best."""
         loop = self.loop
-        eased = loop.bending_force(x) + self.energy.load * polygon_gradient(x)
+        eased = loop.bending_force(x) + self.load * polygon_gradient(x)
         eased /= loop.mean_lengths[:, None]
         units = loop.chords(x) / loop.rest_lengths[:, None]
         balance: FloatArray = (units * loop.chords(eased)).sum(axis=1)

@@ -14,10 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import PlaneEnergy
 from eulerplateau.loop import Loop
+from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.in_plane.chain import Chain, Factors, Point
-from eulerplateau.solvers.spectrum import Stability
 
 # Loop vertices of the coarse loop.
 COARSE = 64
@@ -56,21 +55,22 @@ class _Settled:
     iterations: int
 
 
-def settle_in_plane(energy: PlaneEnergy, x: FloatArray, limit: int) -> Flat | None:
+def settle_in_plane(loop: Loop, load: float, x: FloatArray, limit: int) -> Flat | None:
     """Return the equilibrium next to x (n_b, 2), stable or not; None if none is reached."""
-    chain = Chain(energy)
+    chain = Chain(loop, load)
     found = _settled(chain, chain.angles(x), limit)
     return None if found is None else _flat(chain, found, x)
 
 
 def minimum_in_plane(
-    energy: PlaneEnergy,
+    loop: Loop,
+    load: float,
     x: FloatArray,
     limit: int,
     observe: Callable[[FloatArray], None],
 ) -> tuple[Flat, Stability] | None:
     """Return the minimum that descent from x (n_b, 2) leads to; None if it gets stuck."""
-    chain, spent, found = Chain(energy), 0, None
+    chain, spent, found = Chain(loop, load), 0, None
     if len(x) > 2 * COARSE:
         coarse = _coarse_minimum(chain, x, limit)
         if coarse is not None:
@@ -110,7 +110,7 @@ def _coarse_minimum(
     arc = np.concatenate([[0.0], np.cumsum(s)])
     kept = np.linspace(0, n, COARSE + 1).astype(np.int64)
     loop = Loop(np.diff(arc[kept]))
-    coarse = Chain(replace(chain.energy, loop=loop))
+    coarse = Chain(loop, chain.load)
     found = _minimum(coarse, coarse.angles(x[kept[:-1]]), limit, lambda at: None)
     if found is None:
         return None
@@ -202,7 +202,7 @@ def _lower(chain: Chain, point: Point, turns: FloatArray) -> Point | None:
     size = float(np.abs(turns).max())
     part = min(1.0, _FARTHEST / size) if size > 0.0 else 1.0
     slope = float(point.gradient @ turns)
-    noise = 1e-13 * (abs(point.energy) + abs(chain.energy.load) + 40.0)
+    noise = 1e-13 * (abs(point.energy) + abs(chain.load) + 40.0)
     for _ in range(_HALVINGS):
         angles = chain.closed(point.angles + part * turns)
         if angles is not None:

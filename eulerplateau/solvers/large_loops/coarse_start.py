@@ -8,12 +8,13 @@ not see them.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import Loop
-from eulerplateau.solvers.second_variation import LoopEnergy
+from eulerplateau.film import Stiffness
+from eulerplateau.loop import Loop, LoopEnergy, free_motions, inextensible
 
 
 @dataclass(frozen=True)
@@ -22,10 +23,11 @@ class CoarseLoop:
 
     Attributes
     ----------
-    energy : LoopEnergy
-        Its bending, and the film's energy of the straight-edged loop.
+    loop : its edges' lengths
+    energy : its bending, and the film's energy of the straight-edged loop
     """
 
+    loop: Loop
     energy: LoopEnergy
     _arc: FloatArray
     _nodes: FloatArray
@@ -46,9 +48,9 @@ class CoarseLoop:
         return fine
 
 
-def coarsen(energy: LoopEnergy, n_c: int) -> CoarseLoop:
-    """Keep n_c vertices of the loop, evenly numbered."""
-    s = energy.loop.rest_lengths
+def coarsen(fine_loop: Loop, energy: LoopEnergy, n_c: int) -> CoarseLoop:
+    """Keep n_c vertices of a loop with a film of fixed weights, evenly numbered."""
+    s = fine_loop.rest_lengths
     arc = np.concatenate([[0.0], np.cumsum(s)])
     kept = np.linspace(0, len(s), n_c + 1).astype(np.int64)
     nodes = arc[kept]
@@ -59,6 +61,8 @@ def coarsen(energy: LoopEnergy, n_c: int) -> CoarseLoop:
     share = (arc[:-1] - nodes[behind]) / loop.rest_lengths[behind]
     hats[fine, behind] = 1 - share
     hats[fine, (behind + 1) % n_c] += share
-    film = hats.T @ energy.film @ hats
-    coarse = LoopEnergy(loop, 2 * loop.bending_matrix, 0.5 * (film + film.T))
-    return CoarseLoop(coarse, arc[:-1], nodes, hats, energy.loop.mean_lengths)
+    film = hats.T @ energy.terms["film"].hessian(np.zeros((len(s), 3))) @ hats
+    # tr(x^T S x) has the second derivative 2 S.
+    term = Stiffness(0.25 * (film + film.T), 1.0)
+    coarse = inextensible(loop, term, partial(free_motions, loop, slides=False))
+    return CoarseLoop(loop, coarse, arc[:-1], nodes, hats, fine_loop.mean_lengths)

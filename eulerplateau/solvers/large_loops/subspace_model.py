@@ -1,6 +1,6 @@
 """The second-order model for large loops: a subspace instead of the whole tangent space.
 
-The tangent model of tangent.py is dense, and its cost grows as (3 n_b)^3. Here the same
+The model of second_variation.py is dense, and its cost grows as (3 n_b)^3. Here the same
 model is set up on a small subspace, which (C + tau)^-1 spans from the forces and from a
 random field (shifted_inverse.py), with tau above minus the lowest eigenvalue. From the
 forces come the steps of every trust region, Newton's first of all; from the random field
@@ -12,18 +12,15 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.loop import Loop, LoopEnergy
+from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.large_loops.shifted_inverse import (
     ShiftedInverse,
     TangentSpace,
     shifted_inverse,
     tangent_space,
 )
-from eulerplateau.solvers.second_variation import (
-    LoopEnergy,
-    TangentModel,
-    lagrangian_hessian,
-)
-from eulerplateau.solvers.spectrum import Stability
+from eulerplateau.solvers.second_variation import TangentModel
 
 # Shift where nothing is unstable: well below the lowest bending modes, 2 (2 pi n)^4.
 _SHIFT = 30.0
@@ -38,22 +35,26 @@ _DEPENDENT = 1e-10
 
 
 def subspace_model(
-    energy: LoopEnergy, x: FloatArray, before: TangentModel | None = None
+    energy: LoopEnergy,
+    loop: Loop,
+    matrix: FloatArray,
+    x: FloatArray,
+    before: TangentModel | None = None,
 ) -> TangentModel:
     """Build the model at loop positions x (n_b, 3) that keep their lengths.
 
     Its basis (3 n_b, m) spans a part of the tangent space. The model `before`, of a loop
-    near by, says which shift to try first.
+    near by, says which shift to try first. `matrix` (n_b, n_b) is the energy's constant
+    second derivative, the same for all coordinates.
     """
-    loop = energy.loop
     space = tangent_space(loop, x)
-    bending, film = loop.bending_force(x), energy.film @ x
-    gradient = bending + film
-    multipliers = -space.metric.solve(space.stretch(_weighted(space, gradient)))[:, 0]
-    tension = loop.tension_force(x, multipliers)
-    forces = max(float(np.abs(f).max()) for f in (bending, film, tension))
+    parts = energy.forces(x)
+    gradient = sum(parts[1:], start=parts[0])
+    tensions = -space.metric.solve(space.stretch(_weighted(space, gradient)))[:, 0]
+    tension = loop.tension_force(x, tensions)
+    forces = max(float(np.abs(f).max()) for f in (*parts, tension))
     imbalance = gradient + tension
-    operator = _weighted_hessian(energy, space, multipliers)
+    operator = _weighted_hessian(loop, matrix, space, tensions)
     lowest = 0.0 if before is None else float(before.eigen[0][0])
     inverse = _inverse(space, operator, lowest, _FEW)
     slope = space.project(_weighted(space, imbalance))
@@ -62,9 +63,9 @@ def subspace_model(
     basis = _krylov(inverse, start, _DEPTH, slope)
     return TangentModel(
         x=x,
-        multipliers=multipliers,
+        tensions=tensions,
         residual=float(np.abs(imbalance).max()) / forces,
-        rounding=0.25 * energy.force_rounding * float(np.abs(x).max()) / forces,
+        rounding=0.25 * energy.rounding * float(np.abs(x).max()) / forces,
         basis=basis,
         gradient=basis.T @ slope.ravel(),
         hessian=_on_basis(operator, basis),
@@ -72,14 +73,16 @@ def subspace_model(
     )
 
 
-def lowest_modes(energy: LoopEnergy, model: TangentModel) -> tuple[Stability, FloatArray]:
+def lowest_modes(
+    loop: Loop, matrix: FloatArray, model: TangentModel
+) -> tuple[Stability, FloatArray]:
     """Return the lowest eigenvalues at a model's loop, and their modes (3 n_b, m).
 
     Modes are in the model's coordinates. All unstable and neutral eigenvalues are among
     them, counted by inertia, and at least one that is neither.
     """
-    space = tangent_space(energy.loop, model.x)
-    operator = _weighted_hessian(energy, space, model.multipliers)
+    space = tangent_space(loop, model.x)
+    operator = _weighted_hessian(loop, matrix, space, model.tensions)
     eps = float(np.finfo(np.float64).eps)
     bound = 10 * eps * float(np.abs(operator).sum(axis=1).max())
     inverse = shifted_inverse(space, operator, -bound)
@@ -109,10 +112,10 @@ def _weighted(space: TangentSpace, force: FloatArray) -> FloatArray:
 
 
 def _weighted_hessian(
-    energy: LoopEnergy, space: TangentSpace, multipliers: FloatArray
+    loop: Loop, matrix: FloatArray, space: TangentSpace, tensions: FloatArray
 ) -> FloatArray:
     """Return C (n_b, n_b), the Lagrangian's Hessian in the coordinates sqrt(<s>) x."""
-    hessian = lagrangian_hessian(energy, multipliers)
+    hessian = matrix + loop.tension_stiffness(tensions)
     hessian /= space.root
     hessian /= space.root[:, None]
     return hessian

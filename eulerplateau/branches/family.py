@@ -1,0 +1,29 @@
+"""What a branch is a branch of: energies of a loop that differ in one parameter."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop import LoopEnergy
+
+
+class Family(Protocol):
+    """Energies of a loop that differ in one parameter, good near one shape.
+
+    A soap film is known near one shape at a time, so a family is made anew where the film
+    has turned too far.
+    """
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter, by which the energies' terms know it: see Term.rate."""
+
+    def energy(self, value: float) -> LoopEnergy:
+        """Return the energy at a value of the parameter."""
+
+    def near(self, x: FloatArray) -> Family:
+        """Return the family made anew at a loop x (n, d), or itself."""
+
+    def released(self, x: FloatArray) -> Family:
+        """Return the family whose film is free to move inside its surface, if it can be."""

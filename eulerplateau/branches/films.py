@@ -1,0 +1,172 @@
+"""Branches of a film: from a problem to its diagram, what one calls from Python."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import cast
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
+from eulerplateau.branches.point import BranchPoint, StepControl, first_point
+from eulerplateau.errors import SpecError
+from eulerplateau.film import FilmOfLoop
+from eulerplateau.loop import LoopEnergy
+from eulerplateau.mesh import Shape
+from eulerplateau.solvers import (
+    Equilibrium,
+    Problem,
+    Status,
+    solve,
+)
+
+# Unresolved is no obstacle: the rows say so.
+_EQUILIBRIA = Status.CONVERGED, Status.UNRESOLVED
+
+
+@dataclass(frozen=True)
+class FilmFamily:
+    """A film on its loop under one load after another, good near one shape."""
+
+    problem: Problem
+    film: FilmOfLoop
+    parameter: str = "load"
+
+    def energy(self, value: float) -> LoopEnergy:
+        """Return the energy at a load."""
+        return self.film.energy(self.problem.loop, value)
+
+    def near(self, x: FloatArray) -> FilmFamily:
+        """Return the film made anew at a loop (n_b, 3)."""
+        return self._with(self.film.renewed(x))
+
+    def released(self, x: FloatArray) -> FilmFamily:
+        """Return the film as a minimal surface, where it is curved."""
+        return self._with(self.film.released(x))
+
+    def _with(self, film: FilmOfLoop) -> FilmFamily:
+        return self if film is self.film else replace(self, film=film)
+
+
+@dataclass(frozen=True)
+class FilmPoint(DiagramPoint):
+    """A point of a film's diagram."""
+
+    @property
+    def load(self) -> float:
+        """The film's load."""
+        return self.point.value
+
+    @cached_property
+    def equilibrium(self) -> Equilibrium:
+        """The film there, with all its numbers."""
+        return equilibrium(self.point)
+
+    @property
+    def shape(self) -> Shape:
+        """Its shape."""
+        return self.equilibrium.shape
+
+    @property
+    def critical_mode(self) -> FloatArray | None:
+        """How the film (n_v, 3) moves in a special point's critical mode; else None."""
+        if self.special is None:
+            return None
+        point = self.special.point
+        return _family(point).film.displacement(point.x, self.special.mode)
+
+    def __repr__(self) -> str:
+        """Return one line: branch, load, Morse index and what is special."""
+        kind = "" if self.special is None else f", {self.special.kind} {self.number}"
+        return (
+            f"<FilmPoint on branch {self.branch} at load {self.load:.6g}: "
+            f"{self.point.stability.n_unstable} unstable{kind}>"
+        )
+
+
+def _family(point: BranchPoint) -> FilmFamily:
+    """Return the family of a point of a film's branch: all of them have such a one."""
+    return cast(FilmFamily, point.family)
+
+
+def equilibrium(point: BranchPoint) -> Equilibrium:
+    """Return the equilibrium of a film at a point of one of its branches."""
+    family = _family(point)
+    problem, shape = family.problem, family.film.shape(point.x)
+    found = problem.equilibrium(shape, point.model.tensions, point.value, Status.CONVERGED)
+    classified = problem.classified(found)
+    return replace(classified, iterations=point.corrections, stability=point.stability)
+
+
+def film_point(found: Equilibrium, problem: Problem, control: StepControl) -> BranchPoint:
+    """Return the branch point at an equilibrium, heading for higher loads."""
+    film = problem.film.of_loop(problem.film.prepared(found.shape))
+    x_loop = film.project(found.shape.x_loop)
+    return first_point(FilmFamily(problem, film), x_loop, found.load, control)
+
+
+def first_equilibrium(
+    problem: Problem, load: float, start: Shape | None = None
+) -> Equilibrium:
+    """Return the equilibrium that a start, by default the rest shape, leads to.
+
+    It lies on the disk's own triangles: what the way there has made of them is no part of
+    its state. Raises SpecError where there is none.
+    """
+    found = solve(problem, load, start)
+    if found.status not in _EQUILIBRIA:
+        raise SpecError(
+            "branches.load_min",
+            f"no equilibrium found at {load:g} ({found.status.value}): start elsewhere",
+        )
+    return replace(found, shape=problem.disk.shape.moved(found.shape.x))
+
+
+def explore(
+    problem: Problem,
+    window: tuple[float, float],
+    start: Equilibrium | None = None,
+    *,
+    special_points: int = 8,
+    unstable_modes: int = 3,
+) -> Iterator[FilmPoint]:
+    """Yield the points of all branches of a film that hang together with a start.
+
+    Folds and bifurcations are among them, located by an eigenvalue's crossing; their
+    `special` says what they are.
+
+    Parameters
+    ----------
+    window : (low, high), loads, 0 < low < high
+    start : an equilibrium in the window
+        By default the minimum that the rest shape leads to at the lowest load.
+    special_points : int
+        New branches are followed from the first so many special points.
+    unstable_modes : int
+        A branch is left where it has more unstable modes than this.
+
+    Raises
+    ------
+    SpecError : for a wrong window, or a start that is no equilibrium in it
+    """
+    low, high = (float(end) for end in window)
+    if not 0 < low < high:
+        raise SpecError("window", f"found ({low:g}, {high:g}); should be 0 < low < high")
+    if problem.film.dimension != 3:
+        raise SpecError("problem", "should not be kept in its plane: branches leave it")
+    found = first_equilibrium(problem, low) if start is None else start
+    if found.status not in _EQUILIBRIA:
+        what = f"is no equilibrium ({found.status.value})"
+        raise SpecError("start", f"{what}: {found.status.advice}")
+    if not low <= found.load <= high:
+        raise SpecError("start", f"has the load {found.load:g}, outside the window")
+    control = StepControl(window=(low, high), unit=high)
+    return _explored(problem, found, control, Limits(special_points, unstable_modes))
+
+
+def _explored(
+    problem: Problem, found: Equilibrium, control: StepControl, limits: Limits
+) -> Iterator[FilmPoint]:
+    for visited in explore_from(film_point(found, problem, control), control, limits):
+        yield FilmPoint(**vars(visited))

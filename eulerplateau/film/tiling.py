@@ -1,0 +1,235 @@
+"""The area of a triangulated film, its gradient and its Hessian (eq. continuum-energy).
+
+A triangle with the sides e_0, e_1, e_2 (e_j opposite corner j, counter-clockwise), area A
+and unit normal n has
+
+    dA/dx_i = n x e_i / 2,    d2A/dx_i dx_j = (e_i . e_j) n n^T / (4 A) + eps_ij [n]_x / 2,
+
+eps_ij = 1 where j follows two after i, -1 where it follows one after, cyclically. The first
+part is the cotangent matrix acting on normal displacements; the second cancels in sums over
+a flat neighbourhood, where sliding inside the film costs nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film import area_kernels
+from eulerplateau.film.dissection import LARGEST, dissect
+from eulerplateau.film.elimination import Elimination, plan, summed
+from eulerplateau.mesh import smallest_angle, unit
+
+
+@dataclass(frozen=True)
+class TriangleGeometry:
+    """The triangles of a shape.
+
+    Attributes
+    ----------
+    edges : (n_t, 3, 3) float, the side opposite each corner
+    normals : (n_t, 3) float, unit
+    areas : (n_t,) float
+    """
+
+    edges: FloatArray
+    normals: FloatArray
+    areas: FloatArray
+
+    @property
+    def smallest_angle(self) -> float:
+        """The smallest angle of all triangles, degrees."""
+        return smallest_angle(self.edges, self.areas)
+
+    @cached_property
+    def cotangent(self) -> FloatArray:
+        """(e_i . e_j) / (4 A) (n_t, 3, 3): half of Dirichlet's energy, corner by corner."""
+        cotangent = np.empty_like(self.edges)
+        area_kernels.cotangents(self.edges, self.areas, cotangent)
+        return cotangent
+
+
+@dataclass(frozen=True)
+class TriangleLimits:
+    """Which triangles are fit for what. Angles in degrees, turns as cosines.
+
+    Attributes
+    ----------
+    thin : thinner ones are replaced where a film is made anew
+    thinned : part of its worst angle at the start that a film may come to, if thin
+    vanishing : thinner ones are on their way to collapse; a minimal surface has none
+    folded : a triangle turned farther from its start may have folded over
+    turned : no triangle turns farther in one step to a minimal surface
+    carried : no triangle turns farther in one step of its loop
+    area_kept, normal_kept : what a vertex that slides leaves of each triangle's area, and
+        of the direction of its normal
+    """
+
+    thin: float = 12.0
+    thinned: float = 0.7
+    vanishing: float = 5.0
+    folded: float = 0.3
+    turned: float = 0.5
+    carried: float = 0.5
+    area_kept: float = 0.3
+    normal_kept: float = 0.8
+
+
+LIMITS = TriangleLimits()
+
+
+@dataclass(frozen=True)
+class Tiling:
+    """The triangles of a film, and where the entries of its matrices go.
+
+    Attributes
+    ----------
+    triangles : (n_t, 3) int
+    loop, interior : (n_b,) and (n_v - n_b,) int
+    """
+
+    triangles: IntArray
+    loop: IntArray
+    interior: IntArray
+
+    @property
+    def n_v(self) -> int:
+        """Number of vertices."""
+        return len(self.loop) + len(self.interior)
+
+    def with_triangles(self, triangles: IntArray) -> Tiling:
+        """Return the tiling of the same vertices by other triangles (n_t, 3)."""
+        return replace(self, triangles=triangles)
+
+    def sides(self, x: FloatArray) -> TriangleGeometry:
+        """Return the triangles of the shape x (n_v, 3)."""
+        n = len(self.triangles)
+        sides = TriangleGeometry(np.empty((n, 3, 3)), np.empty((n, 3)), np.empty(n))
+        area_kernels.measure(
+            np.ascontiguousarray(x), self.triangles, sides.edges, sides.normals, sides.areas
+        )
+        return sides
+
+    def gradient(self, sides: TriangleGeometry) -> FloatArray:
+        """Return the gradient of the area (n_v, 3)."""
+        gradient = np.zeros((self.n_v, 3))
+        area_kernels.sum_gradient(self.triangles, sides.edges, sides.normals, gradient)
+        return gradient
+
+    def gather(self, corners: FloatArray) -> FloatArray:
+        """Sum what the corners (n_t, 3, 3) hold at each vertex (n_v, 3)."""
+        return summed(self.triangles.ravel(), corners.reshape(-1, 3), self.n_v)
+
+    def change(self, x: FloatArray, after: FloatArray) -> float:
+        """Return area(after) - area(x) with the relative precision of the difference."""
+        first, second = np.ascontiguousarray(x), np.ascontiguousarray(after)
+        return area_kernels.change(first, second, self.triangles)
+
+    def vertex_normals(self, sides: TriangleGeometry) -> FloatArray:
+        """Return unit normals (n_v, 3), the triangles' weighted by their areas."""
+        weighted = np.repeat((sides.normals * sides.areas[:, None])[:, None], 3, axis=1)
+        total = self.gather(weighted)
+        return unit(total)
+
+    def cotangent_laplacian(self, sides: TriangleGeometry) -> csc_array:
+        """Return L (n_v, n_v) with area gradient = L x; the film at rest is L x = 0."""
+        return self._scalar.fill(sides.cotangent)
+
+    def normal_hessian(self, sides: TriangleGeometry, directions: FloatArray) -> csc_array:
+        """Return the Hessian (n_v, n_v) for displacements along `directions` (n_v, 3)."""
+        entries = self._scalar.empty()
+        area_kernels.sum_along(
+            sides.cotangent,
+            sides.normals,
+            self.triangles,
+            directions,
+            self._scalar.place,
+            entries,
+        )
+        return self._scalar.matrix(entries)
+
+    def hessian(self, sides: TriangleGeometry) -> FloatArray:
+        """Return the whole Hessian, a block (3, 3) for each of `pairs` (m, 3, 3)."""
+        blocks = np.zeros((len(self._scalar.indices), 3, 3))
+        place = self._scalar.place
+        area_kernels.sum_hessian(sides.cotangent, sides.normals, place, blocks)
+        return blocks
+
+    @property
+    def pairs(self) -> tuple[IntArray, IntArray]:
+        """The vertices of every entry (m,) of a matrix (n_v, n_v): its row, its column."""
+        return self._scalar.indices, self._scalar.columns
+
+    @cached_property
+    def pieces(self) -> list[IntArray]:
+        """The interior, numbered 0 ... n_i - 1, in pieces to be eliminated one by one."""
+        return self._dissected(LARGEST)
+
+    @cached_property
+    def small_pieces(self) -> list[IntArray]:
+        """The same in smaller ones, for three unknowns per vertex."""
+        return self._dissected(LARGEST // 3)
+
+    def _dissected(self, largest: int) -> list[IntArray]:
+        graph = self._scalar.matrix(np.ones(len(self._scalar.indices))).tocsr()
+        return [
+            np.searchsorted(self.interior, piece)
+            for piece in dissect(graph, self.loop, self.interior, largest)
+        ]
+
+    @cached_property
+    def elimination(self) -> Elimination:
+        """Of the interior from a matrix (n_v, n_v) with an entry for each of `pairs`."""
+        pieces = [self.interior[piece] for piece in self.pieces]
+        return plan(*self.pairs, pieces, self.loop)
+
+    @cached_property
+    def _scalar(self) -> _Pattern:
+        return _Pattern.of(self.triangles, self.n_v)
+
+
+@dataclass(frozen=True)
+class _Pattern:
+    """Where the entries of element matrices go in a sparse one; found once, then filled.
+
+    Attributes
+    ----------
+    indices, indptr : the sparse matrix's, column by column
+    place : (n_t, 3, 3) int, the entry for each pair of a triangle's corners
+    """
+
+    indices: IntArray
+    indptr: IntArray
+    place: IntArray
+
+    @classmethod
+    def of(cls, triangles: IntArray, n: int) -> _Pattern:
+        """Find the pattern of triangles (n_t, 3), each coupling its corners."""
+        row = np.repeat(triangles, 3, axis=1).ravel()
+        column = np.tile(triangles, 3).ravel()
+        entries, place = np.unique(column * n + row, return_inverse=True)
+        indptr = np.searchsorted(entries, np.arange(n + 1) * n)
+        return cls(entries % n, indptr, place.reshape(-1, 3, 3))
+
+    @cached_property
+    def columns(self) -> IntArray:
+        """The column of every entry."""
+        return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
+
+    def empty(self) -> FloatArray:
+        """Return zeros for the entries of a matrix with this pattern."""
+        return np.zeros(len(self.indices))
+
+    def matrix(self, entries: FloatArray) -> csc_array:
+        """Return the matrix with these entries."""
+        n = len(self.indptr) - 1
+        return csc_array((entries, self.indices, self.indptr), shape=(n, n))
+
+    def fill(self, blocks: FloatArray) -> csc_array:
+        """Return the matrix with the element matrices (n_t, 3, 3) summed into it."""
+        place = self.place.ravel()
+        return self.matrix(summed(place, blocks.ravel(), len(self.indices)))

@@ -1,0 +1,48 @@
+"""The bending energy of a loop, and the energy of a loop that keeps its lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.constraint import Lengths
+from eulerplateau.loop.energy import LoopEnergy, Term
+from eulerplateau.loop.loop import Loop
+
+
+@dataclass(frozen=True)
+class Bending(Term):
+    """sum_v <s_v> kappa_v^2 of a loop that keeps its lengths (eq. discrete-energy).
+
+    There the energy is the quadratic form tr(x^T B x), B = loop.bending_matrix.
+    """
+
+    loop: Loop
+
+    @property
+    def rounding(self) -> float:
+        """What rounding alone leaves of the force, per unit of position: eps |2 B|."""
+        return float(np.finfo(np.float64).eps) * self.loop.stiffest_row
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return 2 B x (n, d)."""
+        return self.loop.bending_force(x)
+
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return 2 B (n, n)."""
+        return 2 * self.loop.bending_matrix
+
+    def change(self, x: FloatArray, step: FloatArray) -> float:
+        """Return the change of a quadratic form: its gradient half-way times the step."""
+        return float(np.vdot(step, self.loop.bending_force(x + 0.5 * step)))
+
+
+def inextensible(
+    loop: Loop, film: Term, free_motions: Callable[[FloatArray], FloatArray]
+) -> LoopEnergy:
+    """Return bending plus a film's energy of a loop that keeps its lengths."""
+    terms = {"bending": Bending(loop), "film": film}
+    return LoopEnergy(terms, Lengths(loop), loop.mean_lengths, free_motions)

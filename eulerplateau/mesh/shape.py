@@ -1,0 +1,34 @@
+"""A shape: where the vertices of a triangulated surface are, and what joins them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from eulerplateau.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A triangulated surface bounded by a loop; lengths in units of L.
+
+    Attributes
+    ----------
+    x : (n_v, 3) float
+    triangles : (n_t, 3) int
+        Counter-clockwise seen from the side the film's normal points to.
+    loop : (n_b,) int
+        Its boundary vertices, cyclic, with the film on the left.
+    """
+
+    x: FloatArray
+    triangles: IntArray
+    loop: IntArray
+
+    @property
+    def x_loop(self) -> FloatArray:
+        """Positions of the loop (n_b, 3)."""
+        return self.x[self.loop]
+
+    def moved(self, x: FloatArray) -> Shape:
+        """Return the surface with its vertices at x (n_v, 3)."""
+        return replace(self, x=x)

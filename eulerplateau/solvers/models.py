@@ -1,0 +1,97 @@
+"""How the second variation is looked at: the whole of it, or the part that matters.
+
+A descent asks for a model at a loop, for the spectrum at an equilibrium, and whether there
+is a short cut to the equilibrium next to a loop. Which of these ways an energy is given is
+decided where a solver is chosen (newton.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop import LoopEnergy
+from eulerplateau.solvers.equilibrium import Stability
+from eulerplateau.solvers.second_variation import TangentModel, stability, tangent_model
+
+
+@dataclass(frozen=True)
+class Settled:
+    """Where an iteration settled: positions (n, d), tensions, iterations."""
+
+    x: FloatArray
+    tensions: FloatArray
+    iterations: int
+
+
+class Models(Protocol):
+    """Second-order models of one energy of loops."""
+
+    @property
+    def energy(self) -> LoopEnergy:
+        """The energy."""
+
+    @property
+    def always_classified(self) -> bool:
+        """Whether the spectrum is cheap enough to be known wherever a descent ends."""
+
+    def at(self, x: FloatArray, before: TangentModel | None = None) -> TangentModel:
+        """Return the model at a loop (n, d); `before` is that of a loop near by."""
+
+    def spectrum(self, model: TangentModel) -> Stability:
+        """Return the lowest part of the spectrum at an equilibrium, or all of it."""
+
+    def modes(self, model: TangentModel, count: int) -> FloatArray:
+        """Return at most `count` of the softest modes (d n, m), the lowest first.
+
+        They are in the model's coordinates.
+        """
+
+    def settle(
+        self,
+        x: FloatArray,
+        tensions: FloatArray,
+        limit: int,
+        observe: Callable[[FloatArray], None],
+    ) -> Settled | None:
+        """Return the equilibrium next to x, stable or not, if there is a quick way to it.
+
+        It takes at most `limit` steps and shows the loop to `observe` after each.
+        """
+
+
+@dataclass(frozen=True)
+class DenseModels:
+    """The whole tangent space at every loop."""
+
+    energy: LoopEnergy
+
+    @property
+    def always_classified(self) -> bool:
+        """Whether the spectrum is known wherever a descent ends: it is."""
+        return True
+
+    def at(self, x: FloatArray, before: TangentModel | None = None) -> TangentModel:
+        """Return the model at a loop (n, d)."""
+        return tangent_model(self.energy, x)
+
+    def spectrum(self, model: TangentModel) -> Stability:
+        """Return all of the spectrum."""
+        return stability(model)
+
+    def modes(self, model: TangentModel, count: int) -> FloatArray:
+        """Return the softest modes (d n, count)."""
+        modes: FloatArray = model.basis @ model.eigen[1][:, :count]
+        return modes
+
+    def settle(
+        self,
+        x: FloatArray,
+        tensions: FloatArray,
+        limit: int,
+        observe: Callable[[FloatArray], None],
+    ) -> Settled | None:
+        """Return None: there is no quicker way than descent."""
+        return None

@@ -1,0 +1,162 @@
+"""Solve at one load, or follow a film over many: what one calls from Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from importlib import import_module
+from typing import Protocol, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.errors import SpecError
+from eulerplateau.mesh import Shape
+from eulerplateau.solvers.equilibrium import Equilibrium
+from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers.start import displaced
+
+# By the names of solver.name in a run's specification; only the one asked for is loaded.
+SOLVERS = {"newton": "newton", "cg": "conjugate_gradient"}
+
+Start = Shape | Equilibrium | ArrayLike
+
+
+class Minimise(Protocol):
+    """A solver: newton.minimise or conjugate_gradient.minimise."""
+
+    def __call__(
+        self,
+        problem: Problem,
+        load: float,
+        start: Shape,
+        tensions: FloatArray | None,
+        max_iterations: int | None,
+        observe: Callable[[FloatArray], None],
+    ) -> Equilibrium:
+        """Return the minimum reached from a start, or the best there is to say."""
+
+
+def solve(
+    problem: Problem,
+    load: float,
+    start: Start | None = None,
+    *,
+    tensions: ArrayLike | None = None,
+    solver: str = "newton",
+    max_iterations: int | None = None,
+    observe: Callable[[FloatArray], None] | None = None,
+) -> Equilibrium:
+    """Return the minimum of the energy that a start leads to.
+
+    Not converging raises nothing: the result's `status` says so.
+
+    Parameters
+    ----------
+    load : float, not negative
+        k L^3 / alpha of springs, sigma L^3 / alpha of other films.
+    start : Shape, Equilibrium, or positions (n_v, 3) in units of L
+        By default the rest shape, each vertex displaced by about 1e-3 across its plane. Of
+        films with fixed weights only the loop matters; a soap film's interior is where its
+        mesh lies. An equilibrium brings its tensions along.
+    tensions : (n_b,) float
+        Those that belong to the start, where they are known: they save time.
+    solver : "newton" or "cg"
+    max_iterations : int
+        Where to give up; by default 500 of Newton's, a million of conjugate gradients'.
+    observe : function of the loop (n_b, 3)
+        Shown it after every step.
+
+    Raises
+    ------
+    SpecError : for an unknown solver, a wrong load, or arrays of the wrong size
+    """
+    shape, known = _start(problem, start)
+    if tensions is not None:
+        known = _tensions(problem, tensions)
+    minimise = _named(solver)
+    show = (lambda x_loop: None) if observe is None else observe
+    return minimise(problem, _load(load), shape, known, _limit(max_iterations), show)
+
+
+def sweep(
+    problem: Problem,
+    loads: Iterable[float],
+    start: Start | None = None,
+    *,
+    solver: str = "newton",
+    max_iterations: int | None = None,
+) -> Iterator[Equilibrium]:
+    """Yield one equilibrium per load, each started from the last shape.
+
+    A shape that is not finite is yielded, and not started from. See `solve`.
+    """
+    shape, tensions = _start(problem, start)
+    minimise, limit = _named(solver), _limit(max_iterations)
+    return _swept(
+        problem, [_load(load) for load in loads], shape, tensions, minimise, limit
+    )
+
+
+def _swept(
+    problem: Problem,
+    loads: list[float],
+    shape: Shape,
+    tensions: FloatArray | None,
+    minimise: Minimise,
+    limit: int | None,
+) -> Iterator[Equilibrium]:
+    for load in loads:
+        found = minimise(problem, load, shape, tensions, limit, lambda x_loop: None)
+        yield found
+        if np.isfinite(found.shape.x).all():
+            shape, tensions = found.shape, found.tensions
+
+
+def _named(solver: str) -> Minimise:
+    if solver not in SOLVERS:
+        known = " or ".join(repr(name) for name in SOLVERS)
+        raise SpecError("solver", f"found {solver!r}; should be {known}")
+    module = import_module(f"eulerplateau.solvers.{SOLVERS[solver]}")
+    return cast(Minimise, module.minimise)
+
+
+def _start(problem: Problem, start: Start | None) -> tuple[Shape, FloatArray | None]:
+    if start is None:
+        return problem.shape(displaced(problem.disk, 1e-3, 1)), None
+    if isinstance(start, Equilibrium):
+        return _fitting(problem, start.shape), start.tensions
+    if isinstance(start, Shape):
+        return _fitting(problem, start), None
+    return problem.shape(start), None
+
+
+def _fitting(problem: Problem, shape: Shape) -> Shape:
+    """Return a shape of the problem's own vertices, or raise SpecError."""
+    if not np.array_equal(shape.loop, problem.disk.loop):
+        raise SpecError("start", "has another loop than the problem's disk: is it its own?")
+    return problem.shape(shape.x) if shape.x.shape != problem.disk.x.shape else shape
+
+
+def _tensions(problem: Problem, tensions: ArrayLike) -> FloatArray:
+    found = np.asarray(tensions, dtype=np.float64)
+    if found.shape != problem.disk.loop.shape:
+        n_b = len(problem.disk.loop)
+        raise SpecError("tensions", f"have shape {found.shape}; should be ({n_b},)")
+    return found
+
+
+def _load(load: float) -> float:
+    try:
+        value = float(load)
+    except (TypeError, ValueError):
+        raise SpecError("load", f"found {load!r}; should be a number") from None
+    if np.isnan(value) or value < 0:
+        raise SpecError("load", f"found {value:g}; should not be negative")
+    return value
+
+
+def _limit(max_iterations: int | None) -> int | None:
+    if max_iterations is not None and max_iterations < 1:
+        raise SpecError("max_iterations", f"found {max_iterations}; should be 1 or more")
+    return max_iterations

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
+from scripts.studies.stability import cases
+from scripts.studies.stability.cases import Disk, Outcome
 from tests.helpers import shapes
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-
-import extreme_cases as cases
-from extreme_cases import Disk, Outcome
 
 EPS = float(np.finfo(np.float64).eps)
 # Films of fixed weights; the film of true area has tests of its own (test_extreme_area).

@@ -119,6 +119,15 @@ def test_script_called_through_a_link_finds_its_repository(ready: Clone) -> None
     assert ready.run("link") == (4, [SWEEP])
 
 
+@pytest.mark.parametrize("study", ["benchmark", "twist_threshold"])
+def test_study_is_started_as_a_package_with_the_same_arguments(
+    ready: Clone, study: str
+) -> None:
+    code, asked = ready.run(study, "--csv", "a table.csv", PYTHONPATH="/elsewhere")
+    assert code == 0
+    assert asked == [f"-P -m scripts.studies.{study} --csv a table.csv"]
+
+
 @pytest.mark.parametrize("name", ["requirements.lock", "pyproject.toml"])
 def test_changed_requirements_are_installed_in_place(ready: Clone, name: str) -> None:
     with (ready.path / name).open("a") as file:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,11 +10,15 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-
-from error_arithmetic import fitted_order, pareto, richardson, seconds_to
-from error_conformal import mesh_free, mesh_free_repeats
-from error_records import (
+from scripts.studies.error_vs_time.arithmetic import (
+    fitted_order,
+    pareto,
+    richardson,
+    seconds_to,
+)
+from scripts.studies.error_vs_time.conformal import mesh_free, mesh_free_repeats
+from scripts.studies.error_vs_time.ours import solvers
+from scripts.studies.error_vs_time.records import (
     HARMONICS,
     Measurement,
     Point,
@@ -24,9 +27,8 @@ from error_records import (
     with_errors,
     write_csv,
 )
-from error_report import MARKERS, Way, cheapest, draw
-from error_scenes import SCENES
-from error_vs_time import solvers
+from scripts.studies.error_vs_time.report import MARKERS, Way, cheapest, draw
+from scripts.studies.error_vs_time.scenes import SCENES
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 4.0])

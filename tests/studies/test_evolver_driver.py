@@ -1,25 +1,24 @@
-"""scripts/evolver.py, as far as it can be tried without Surface Evolver."""
+"""What scripts/error_vs_time asks of Evolver, as far as it can be tried without it."""
 
 from __future__ import annotations
 
 import re
-import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.helpers import shapes
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-
-import evolver
-from evolver_files import film_datafile, newton_script, start_script, string_datafile
-
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers.problem import make_problem
+from scripts.studies.error_vs_time import evolver
+from scripts.studies.error_vs_time.evolver_files import (
+    film_datafile,
+    newton_script,
+    start_script,
+    string_datafile,
+)
+from tests.helpers import shapes
 
 SIGMA = 1400.0
 

@@ -1,7 +1,8 @@
-"""scripts/figures.py: a figure by its name, and what the committed page holds."""
+"""scripts/figures: a figure by its name, and what the committed page holds."""
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -14,8 +15,9 @@ ROOT = Path(__file__).parents[2]
 
 
 def make(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-P", str(ROOT / "scripts" / "figures.py"), *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-P", "-m", "scripts.studies.figures", *arguments]
+    path = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=path)
 
 
 def test_one_figure_is_made_and_the_page_left_alone(tmp_path: Path) -> None:

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import csv
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from scripts.studies.stability import trials
+from scripts.studies.stability.__main__ import MARK
 from tests.helpers.extremes import TENSIONS, cases, oval
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-
-import stability_report
-import stability_trials
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -24,15 +20,15 @@ def committed() -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def trial(against: str, load: float, case: cases.Disk) -> stability_trials.Trial:
-    return stability_trials.Trial(
+def trial(against: str, load: float, case: cases.Disk) -> trials.Trial:
+    return trials.Trial(
         "any", "any", "springs", load, case, against, twin=case, solver="newton"
     )
 
 
 def test_refined_disk_has_four_triangles_for_one_and_the_same_rest_shape() -> None:
     coarse = oval(3)
-    fine = stability_trials.refined(coarse, coarse.mesh.x)
+    fine = trials.refined(coarse, coarse.mesh.x)
     assert len(fine.triangles) == 4 * len(coarse.triangles)
     assert fine.mesh.n_b == 2 * coarse.mesh.n_b
     assert fine.mesh.length == pytest.approx(1.0, rel=1e-14)
@@ -40,21 +36,18 @@ def test_refined_disk_has_four_triangles_for_one_and_the_same_rest_shape() -> No
 
 
 def test_case_that_is_its_own_twin_has_no_error() -> None:
-    row = stability_trials.row(trial(stability_trials.TWIN, 300.0, oval(4)))
+    row = trials.row(trial(trials.TWIN, 300.0, oval(4)))
     assert row.happened == "converged"
     assert (row.energy_error, row.shape_error, row.eigenvalue_error) == (0, 0, 0)
 
 
 def test_bare_loop_is_a_reference_of_first_order_in_the_load() -> None:
-    rows = [
-        stability_trials.row(trial(stability_trials.BARE, load, oval(4)))
-        for load in (1.0, 2.0)
-    ]
+    rows = [trials.row(trial(trials.BARE, load, oval(4))) for load in (1.0, 2.0)]
     assert rows[1].energy_error / rows[0].energy_error == pytest.approx(4.0, rel=0.1)
 
 
 def test_unresolved_case_is_held_against_a_mesh_that_resolves_it() -> None:
-    row = stability_trials.row(trial(stability_trials.FINER, 300.0, cases.polygon(6)))
+    row = trials.row(trial(trials.FINER, 300.0, cases.polygon(6)))
     assert row.happened == "unresolved"
     assert row.against.endswith("converged")
     assert 0 < row.energy_error < 1
@@ -62,7 +55,7 @@ def test_unresolved_case_is_held_against_a_mesh_that_resolves_it() -> None:
 
 def test_refused_case_is_a_row_with_the_reason_and_no_numbers() -> None:
     case = cases.short_edge(oval(4), 1e-6)
-    row = stability_trials.row(trial(stability_trials.TWIN, TENSIONS[0], case))
+    row = trials.row(trial(trials.TWIN, TENSIONS[0], case))
     assert row.happened.startswith("refused: edge")
     assert np.isnan([row.energy_error, row.shape_error, row.condition]).all()
 
@@ -73,11 +66,11 @@ def test_committed_table_has_every_trial_of_every_film_and_the_page_shows_it() -
     wanted = {
         (trial.group, trial.name, trial.film, trial.solver)
         for film in cases.FILMS
-        for trial in stability_trials.trials(film)
+        for trial in trials.trials(film)
     }
     assert told == wanted
     page = (DOCS / "stability.md").read_text(encoding="utf-8")
-    table = page.partition(stability_report.MARK)[2]
+    table = page.partition(MARK)[2]
     shown = [line for line in table.splitlines() if line.startswith("| ")]
     heads = 2 * len({row["group"] for row in rows})
     assert len(shown) == len(rows) + heads

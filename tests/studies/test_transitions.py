@@ -1,20 +1,14 @@
-"""scripts/transitions_report.py: limits under refinement, and how sure they are."""
+"""scripts/transitions: limits under refinement, and how sure they are."""
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 from scipy.stats import t
 
-
-@pytest.fixture
-def report(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "scripts")
-    return importlib.import_module("transitions_report")
+from scripts.studies.transitions.report import NAMES, limit
 
 
 def points(noise: float, seed: int = 0) -> list[tuple[int, int, float]]:
@@ -27,15 +21,15 @@ def points(noise: float, seed: int = 0) -> list[tuple[int, int, float]]:
     ]
 
 
-def test_errors_of_second_order_are_taken_out_exactly(report: ModuleType) -> None:
-    value, error = report.limit(points(0.0))
+def test_errors_of_second_order_are_taken_out_exactly() -> None:
+    value, error = limit(points(0.0))
     assert value == pytest.approx(2000.0, rel=1e-12)
     assert error < 1e-8
 
 
-def test_two_errors_cover_the_limit_as_often_as_students_t_says(report: ModuleType) -> None:
+def test_two_errors_cover_the_limit_as_often_as_students_t_says() -> None:
     """Twelve loads, four unknowns: two standard errors of eight degrees of freedom."""
-    found = [report.limit(points(0.05, seed)) for seed in range(400)]
+    found = [limit(points(0.05, seed)) for seed in range(400)]
     covered = np.mean([abs(value - 2000.0) <= error for value, error in found])
     expected = 1 - 2 * t.sf(2.0, 8)
     assert covered == pytest.approx(
@@ -43,9 +37,7 @@ def test_two_errors_cover_the_limit_as_often_as_students_t_says(report: ModuleTy
     )
 
 
-def test_table_of_the_committed_page_is_that_of_the_committed_loads(
-    report: ModuleType,
-) -> None:
+def test_table_of_the_committed_page_is_that_of_the_committed_loads() -> None:
     """Every limit in docs/transitions.md, from docs/transitions_dirichlet.csv."""
     docs = Path(__file__).parents[2] / "docs"
     page = (docs / "transitions.md").read_text(encoding="utf-8")
@@ -53,10 +45,10 @@ def test_table_of_the_committed_page_is_that_of_the_committed_loads(
     met: dict[tuple[str, str], list[tuple[int, int, float]]] = {}
     for line in lines:
         _, polygon, algorithm, _, n_b, before, after, last, first, _ = line.split(",")
-        name = report.NAMES[before, after]
+        name = NAMES[before, after]
         middle = 0.5 * (float(last) + float(first))
         met.setdefault((polygon, name), []).append((int(algorithm), int(n_b), middle))
     assert len(met) == 13
     for (polygon, _), loads in met.items():
         rows = [text for text in page.splitlines() if text.startswith(f"| {polygon} |")]
-        assert any(f" {report.limit(loads)[0]:.2f} ±" in row for row in rows)
+        assert any(f" {limit(loads)[0]:.2f} ±" in row for row in rows)

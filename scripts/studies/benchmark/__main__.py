@@ -1,0 +1,198 @@
+"""Run the cases of the benchmark, each in a process of its own."""
+
+from __future__ import annotations
+
+import json
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film import Condensation
+from eulerplateau.loop import backward_differences
+from eulerplateau.mesh import DiskMesh, MeshSpec, generate
+from eulerplateau.settings import validate
+from eulerplateau.solvers import Problem, conjugate_gradient, make_problem, newton
+from scripts.studies.benchmark.report import draw, report, summary, write_csv
+
+SIZES = (474, 2000, 7500, 50_000, 200_000)
+SOLVERS: dict[str, Callable[..., Any]] = {
+    "cg": conjugate_gradient.solve,
+    "newton": newton.solve,
+}
+COLD, WARM = 700.0, 710.0
+# A solver that has not finished the cold task after this long is not run any further.
+SECONDS = 300.0
+REPEATS = {"cg": 3, "newton": 5}
+
+
+class OutOfTimeError(Exception):
+    """Raised from a report when the time is used up."""
+
+
+class Watch:
+    """Collects (seconds, error) of a solver's reports; judging them is not counted."""
+
+    def __init__(self, problem: Problem, load: float, answer: float) -> None:
+        condensed = problem.condensed
+        assert isinstance(condensed, Condensation)
+        self.film = load * condensed.stiffness
+        self.problem, self.answer = problem, answer
+        self.points: list[tuple[float, float]] = []
+        self.started = time.perf_counter()
+
+    def __call__(self, x_loop: FloatArray) -> None:
+        """Judge the loop (n_b, 3) that a solver reports."""
+        now = time.perf_counter()
+        film = float(np.sum(x_loop * (self.film @ x_loop)))
+        off = abs((film + bending_energy(self.problem, x_loop)) / self.answer - 1)
+        error = max(off, self.problem.loop.length_error(x_loop))
+        self.points.append((now - self.started, error))
+        if now - self.started > SECONDS:
+            raise OutOfTimeError
+        self.started += time.perf_counter() - now
+
+
+def bending_energy(problem: Problem, x_loop: FloatArray) -> float:
+    """Return sum <s> kappa^2 by differences: as a product it drowns on fine loops."""
+    tangent = problem.loop.chords(x_loop) / problem.loop.rest_lengths[:, None]
+    turn = backward_differences(tangent)
+    return float(np.sum(np.sum(turn**2, axis=1) / problem.loop.mean_lengths))
+
+
+@click.group(invoke_without_command=True)
+@click.option("--sizes", default=",".join(map(str, SIZES)), help="Numbers of vertices.")
+@click.option("--out", default="docs", type=click.Path(path_type=Path, file_okay=False))
+@click.pass_context
+def main(context: click.Context, sizes: str, out: Path) -> None:
+    """Run all cases and write benchmark.md, benchmark.csv and benchmark.png to OUT."""
+    if context.invoked_subcommand is not None:
+        return
+    cases = []
+    alive = {"cg", "newton"}
+    for size in map(int, sizes.split(",")):
+        for solver in sorted(alive):
+            case = run_apart(size, solver)
+            cases.append(case)
+            if not case["finished"]:
+                alive.discard(solver)
+            click.echo(summary(case), err=True)
+    out.mkdir(parents=True, exist_ok=True)
+    write_csv(out / "benchmark.csv", cases)
+    (out / "benchmark.md").write_text(report(cases), encoding="utf-8")
+    draw(out / "benchmark.png", cases)
+    click.echo(report(cases))
+
+
+@main.command()
+@click.argument("size", type=int)
+@click.argument("solver", type=click.Choice(sorted(SOLVERS)))
+def case(size: int, solver: str) -> None:
+    """Run one case in this process and print it as JSON."""
+    with threadpool_limits(1, user_api="blas"):
+        click.echo(json.dumps(measure(size, solver)))
+
+
+def run_apart(size: int, solver: str) -> dict[str, Any]:
+    """Run a case in a process of its own."""
+    command = [sys.executable, "-P", "-m", __package__, "case", str(size), solver]
+    done = subprocess.run(command, stdout=subprocess.PIPE, check=True)
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def measure(size: int, solver: str) -> dict[str, Any]:
+    """Return set-up times, peak memory and the runs of both tasks."""
+    mesh = make_mesh(size)
+    problem, set_up = timed(lambda: make_problem(mesh))
+    _, condensed = timed(lambda: problem.condensed)
+    flat, nothing = displaced(mesh), np.zeros(mesh.n_b)
+    cold = newton.solve(problem, flat, nothing, COLD)
+    warm = newton.solve(problem, cold.x, cold.multipliers, WARM)
+    tasks = {
+        "cold": (COLD, flat, nothing, cold.energy),
+        "warm": (WARM, cold.x, cold.multipliers, warm.energy),
+    }
+    runs = []
+    for task, (load, x, multipliers, answer) in tasks.items():
+        for repeat in range(REPEATS[solver]):
+            run = timed_run(problem, solver, x, multipliers, load, answer)
+            runs.append({"task": task, "repeat": repeat, **run})
+            if run["seconds"] > 0.2 * SECONDS:
+                break
+        if runs[-1]["status"] == "out of time":
+            break
+    return {
+        "vertices": mesh.n_v,
+        "loop_edges": mesh.n_b,
+        "solver": solver,
+        "set_up": set_up + condensed,
+        "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
+        "finished": runs[-1]["status"] != "out of time",
+        "runs": runs,
+    }
+
+
+def make_mesh(size: int) -> DiskMesh:
+    """Return the x2.0 hexagon with about `size` vertices."""
+    polygon = {"kind": "stretched-hexagon", "factor": 2.0}
+    data = {"vertices": size, "algorithm": 6, "polygon": polygon}
+    return generate(validate(data, MeshSpec, "benchmark"))
+
+
+def displaced(mesh: DiskMesh) -> FloatArray:
+    """Return the flat mesh with the displacement of runs/elongated.toml."""
+    x = mesh.x.copy()
+    x[:, 2] += 1e-3 * np.random.default_rng(1).standard_normal(mesh.n_v)
+    return x
+
+
+def timed(call: Callable[[], Any]) -> tuple[Any, float]:
+    """Return what `call` returns, and the seconds it took."""
+    started = time.perf_counter()
+    result = call()
+    return result, time.perf_counter() - started
+
+
+def timed_run(
+    problem: Problem,
+    solver: str,
+    x: FloatArray,
+    multipliers: FloatArray,
+    load: float,
+    answer: float,
+) -> dict[str, Any]:
+    """Return one run: the whole solve's seconds and the errors on the way."""
+    watch = Watch(problem, load, answer)
+    try:
+        found = SOLVERS[solver](problem, x, multipliers, load, observe=watch)
+    except OutOfTimeError:
+        seconds, error = watch.points[-1]
+        return {
+            "seconds": seconds,
+            "points": watch.points,
+            "status": "out of time",
+            "iterations": None,
+            "residual": None,
+            "length_error": error,
+        }
+    return {
+        "seconds": time.perf_counter() - watch.started,
+        "points": watch.points,
+        "status": found.status.value,
+        "iterations": found.iterations,
+        "residual": found.residual,
+        "length_error": found.length_error,
+    }
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,152 @@
+"""What runs in a process of its own: our solvers on one point."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh import DiskMesh
+from eulerplateau.solvers import Equilibrium, Problem, Status
+from scripts.studies.error_vs_time.scenes import (
+    Scene,
+    gyration,
+    lattice,
+    prolong,
+    shape_error,
+)
+from scripts.studies.error_vs_time.thresholds import disk_threshold
+
+Found = TypeVar("Found")
+
+REPEATS = 5
+# Seconds after which a point is not repeated again: points of 2 s are repeated in full.
+ENOUGH = 10.0
+
+
+def repeated(meshes: list[DiskMesh], scene: Scene, solver: str) -> Iterator[dict[str, Any]]:
+    """Yield what each repeat of a point cost and came to."""
+    # Loads the compiled kernels and whatever is imported late.
+    solved([lattice(3, 1.0)], replace(scene, load=1.0, threshold=None), solver)
+    run = partial(solved, meshes, scene, solver)
+    return timed(run, partial(what, scene, meshes[-1]))
+
+
+def timed(
+    run: Callable[[], tuple[Found, float, float]],
+    describe: Callable[[Found], dict[str, Any]],
+) -> Iterator[dict[str, Any]]:
+    """Yield what each repeat of `run` cost and came to, which `describe` says.
+
+    It returns what was found and the wall seconds of set-up and solving.
+    """
+    start_up, began = time.process_time(), time.perf_counter()
+    for repeat in range(REPEATS):
+        cpu = time.process_time()
+        found, set_up, solve = run()
+        cpu = time.process_time() - cpu
+        yield {
+            "repeat": repeat,
+            "set_up": set_up,
+            "solve": solve,
+            "cpu": cpu,
+            "start_up": start_up,
+            "memory": peak_memory(),
+            **describe(found),
+        }
+        if time.perf_counter() - began > ENOUGH:
+            return
+
+
+def solved(
+    meshes: list[DiskMesh], scene: Scene, solver: str
+) -> tuple[Equilibrium | tuple[float, int], float, float]:
+    """Return what is found on the last mesh, and the wall seconds of set-up and solving.
+
+    Carrying the shape from mesh to mesh counts as solving.
+    """
+    from eulerplateau.solvers import conjugate_gradient, newton
+    from eulerplateau.solvers.problem import make_problem
+
+    solve = {"newton": newton.solve, "cg": conjugate_gradient.solve}[solver]
+    x, found, steps = scene.start(meshes[0]), None, 0
+    set_up, started = 0.0, time.perf_counter()
+    for number, mesh in enumerate(meshes):
+        if found is not None:
+            before = meshes[number - 1]
+            x = prolong(before, found.x[before.loop], mesh, scene.in_plane)
+        making = time.perf_counter()
+        problem = make_problem(mesh, scene.film, plane=scene.in_plane)
+        if scene.film != "area":
+            _ = problem.condensed
+        set_up += time.perf_counter() - making
+        if scene.threshold is not None:
+            threshold = disk_threshold(problem, mesh, scene.transverse)
+            return threshold, set_up, time.perf_counter() - started - set_up
+        if scene.saddle:
+            found = saddle_in_plane(problem, x, scene.load)
+        else:
+            found = solve(problem, x, np.zeros(mesh.n_b), scene.load)
+        steps += found.iterations
+    assert found is not None
+    total = time.perf_counter() - started
+    return replace(found, iterations=steps), set_up, total - set_up
+
+
+def saddle_in_plane(problem: Problem, x: FloatArray, load: float) -> Equilibrium:
+    """Return the equilibrium next to x (n_v, 3) in the plane, whatever its index."""
+    from eulerplateau.film.plane_energy import PlaneEnergy
+    from eulerplateau.solvers.in_plane.newton import settle_in_plane
+
+    x, loop = x.copy(), problem.loop_vertices
+    flat = settle_in_plane(PlaneEnergy(problem.loop, load), x[loop, :2], 100)
+    if flat is None:
+        nothing = np.zeros(len(loop))
+        return problem.equilibrium(x, nothing, load, Status.STALLED)
+    x[loop, :2] = flat.x
+    found = problem.equilibrium(x, flat.multipliers, load, Status.CONVERGED)
+    return replace(found, iterations=flat.iterations)
+
+
+def what(
+    scene: Scene, mesh: DiskMesh, found: Equilibrium | tuple[float, int]
+) -> dict[str, Any]:
+    """Return the part of a record that says what was found, not what it cost."""
+    if isinstance(found, tuple):
+        value, loads = found
+        return {
+            "value": value,
+            "iterations": loads,
+            "gyration": math.nan,
+            "shape_error": math.nan,
+            "status": "converged",
+        }
+    loop = found.x[mesh.loop]
+    return {
+        "value": found.energy,
+        "iterations": found.iterations,
+        "gyration": gyration(mesh.rest_lengths, loop),
+        "shape_error": distance(scene, mesh.rest_lengths, loop),
+        "status": found.status.value,
+    }
+
+
+def distance(scene: Scene, lengths: FloatArray, loop: FloatArray) -> float:
+    """Return the error of the shape (n_b, 3) where it is known exactly, else nan."""
+    return math.nan if scene.exact is None else shape_error(lengths, loop, scene.exact)
+
+
+def peak_memory() -> float:
+    """Return this process's peak memory in MiB; a child's ru_maxrss may be its parent's."""
+    status = Path("/proc/self/status")
+    if not status.exists():
+        return math.nan
+    line = next(row for row in status.read_text().splitlines() if row.startswith("VmHWM"))
+    return int(line.split()[1]) / 1024

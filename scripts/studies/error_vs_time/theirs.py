@@ -1,0 +1,89 @@
+"""Points of Surface Evolver's."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from eulerplateau.mesh import DiskMesh
+from scripts.studies.error_vs_time.evolver import EvolverRun, relax, run_evolver
+from scripts.studies.error_vs_time.evolver_files import (
+    film_datafile,
+    gradient_script,
+    start_script,
+    string_datafile,
+)
+from scripts.studies.error_vs_time.measure import ENOUGH, REPEATS, distance
+from scripts.studies.error_vs_time.points import TOO_SLOW, Place, as_measurement, summarise
+from scripts.studies.error_vs_time.records import COARSE_TO_FINE, Measurement
+from scripts.studies.error_vs_time.scenes import Scene, gyration, prolong
+
+
+def measure_evolver(
+    scene: Scene, kind: str, meshes: list[DiskMesh]
+) -> Iterator[Measurement]:
+    """Yield Evolver's repeats, directly on each mesh and coarse to fine."""
+    describe = string_datafile if scene.in_plane else film_datafile
+    for name in ("evolver", f"evolver{COARSE_TO_FINE}"):
+        for last, mesh in enumerate(meshes):
+            place = Place(kind, mesh.n_b, mesh.n_v)
+            sequence = meshes[: last + 1] if name != "evolver" else [mesh]
+            reading = 0.0
+            for level in sequence:
+                data = describe(level, scene.start(level), scene.load)
+                reading += run_evolver(data, start_script(scene.in_plane)).wall
+            records = []
+            for repeat in range(REPEATS):
+                records.append(evolver_record(scene, sequence, repeat, reading))
+                if sum(record["cpu"] for record in records) > ENOUGH:
+                    break
+            yield from (as_measurement(scene, name, place, r) for r in records)
+            summarise(scene, name, place, records)
+    if not scene.in_plane and kind == "uniform":
+        mesh = meshes[1]
+        place = Place(kind, mesh.n_b, mesh.n_v)
+        data = film_datafile(mesh, scene.start(mesh), scene.load)
+        run = run_evolver(data, gradient_script(TOO_SLOW), seconds=2 * TOO_SLOW)
+        record = as_record(scene, mesh, run, 0, 0.0)
+        yield as_measurement(scene, "evolver, gradients", place, record)
+        summarise(scene, "evolver, gradients", place, [record])
+
+
+def evolver_record(
+    scene: Scene, sequence: list[DiskMesh], repeat: int, reading: float
+) -> dict[str, Any]:
+    """Run Evolver once; its memory is asked for in the first repeat only."""
+    x = scene.start(sequence[0])
+    try:
+        run = relax(
+            sequence, x, scene.load, prolong, in_plane=scene.in_plane, weigh=repeat == 0
+        )
+    except ValueError:
+        nan, nowhere = math.nan, np.full((sequence[-1].n_b, 3), math.nan)
+        run = EvolverRun(nan, nowhere, 0, nan, nan, nan, converged=False)
+    return as_record(scene, sequence[-1], run, repeat, reading)
+
+
+def as_record(
+    scene: Scene, mesh: DiskMesh, run: EvolverRun, repeat: int, reading: float
+) -> dict[str, Any]:
+    """Return Evolver's run as a record; `reading`: seconds of starting and reading."""
+    reached = math.nan
+    if run.converged:
+        reached = distance(scene, mesh.rest_lengths, run.loop)
+    return {
+        "repeat": repeat,
+        "set_up": reading,
+        "solve": run.wall - reading,
+        "cpu": run.cpu,
+        "start_up": 0.0,
+        "iterations": run.steps,
+        "memory": run.memory,
+        "value": run.energy,
+        "gyration": gyration(mesh.rest_lengths, run.loop),
+        "shape_error": reached,
+        "status": "converged" if run.converged else "failed",
+    }

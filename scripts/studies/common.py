@@ -1,7 +1,42 @@
-"""Where the repository is, for studies that read its files or write to its docs."""
+"""What studies share: the repository's place, meshes, processes, tables, the machine."""
 
 from __future__ import annotations
 
+import os
+import platform
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
+from typing import Any
+
+from threadpoolctl import threadpool_limits
+
+from eulerplateau.mesh import DiskMesh, MeshSpec, generate
+from eulerplateau.settings import validate
 
 ROOT = Path(__file__).parents[2]
+
+
+def make_mesh(**settings: Any) -> DiskMesh:
+    """Return the mesh that a mesh specification with these settings describes."""
+    return generate(validate(settings, MeshSpec, "mesh"))
+
+
+def processes() -> ProcessPoolExecutor:
+    """Return a pool with a process for each CPU, of one thread each."""
+    return ProcessPoolExecutor(initializer=partial(threadpool_limits, 1))
+
+
+def markdown_table(rows: Iterable[Sequence[str]], words: int) -> str:
+    """Return a Markdown table: its head first; numbers stand behind `words` columns."""
+    head, *others = rows
+    rule = ["---"] * words + ["---:"] * (len(head) - words)
+    return "".join(f"| {' | '.join(row)} |\n" for row in (head, rule, *others))
+
+
+def machine() -> str:
+    """Return what times were taken on: architecture, Python, CPUs it may use."""
+    may_use = hasattr(os, "sched_getaffinity")
+    cpus = len(os.sched_getaffinity(0)) if may_use else 1
+    return f"{platform.machine()}, Python {platform.python_version()}, {cpus} CPUs"

@@ -18,10 +18,10 @@ from threadpoolctl import threadpool_limits
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import Condensation
 from eulerplateau.loop import backward_differences
-from eulerplateau.mesh import DiskMesh, MeshSpec, generate
-from eulerplateau.settings import validate
+from eulerplateau.mesh import DiskMesh
 from eulerplateau.solvers import Problem, conjugate_gradient, make_problem, newton
 from scripts.studies.benchmark.report import draw, report, summary, write_csv
+from scripts.studies.common import make_mesh
 
 SIZES = (474, 2000, 7500, 50_000, 200_000)
 SOLVERS: dict[str, Callable[..., Any]] = {
@@ -111,7 +111,7 @@ def run_apart(size: int, solver: str) -> dict[str, Any]:
 
 def measure(size: int, solver: str) -> dict[str, Any]:
     """Return set-up times, peak memory and the runs of both tasks."""
-    mesh = make_mesh(size)
+    mesh = hexagon(size)
     problem, set_up = timed(lambda: make_problem(mesh))
     _, condensed = timed(lambda: problem.condensed)
     flat, nothing = displaced(mesh), np.zeros(mesh.n_b)
@@ -141,11 +141,10 @@ def measure(size: int, solver: str) -> dict[str, Any]:
     }
 
 
-def make_mesh(size: int) -> DiskMesh:
+def hexagon(size: int) -> DiskMesh:
     """Return the x2.0 hexagon with about `size` vertices."""
     polygon = {"kind": "stretched-hexagon", "factor": 2.0}
-    data = {"vertices": size, "algorithm": 6, "polygon": polygon}
-    return generate(validate(data, MeshSpec, "benchmark"))
+    return make_mesh(polygon=polygon, vertices=size, algorithm=6)
 
 
 def displaced(mesh: DiskMesh) -> FloatArray:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import csv
-import os
-import platform
 import statistics
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from scripts.studies.common import machine
 
 ERRORS = tuple(10.0**-d for d in (3, 6, 8, 10, 12))
 COLUMNS = (
@@ -57,9 +57,8 @@ def report(cases: list[dict[str, Any]]) -> str:
     lines = [
         "# Error against run time",
         "",
-        f"Printed by `scripts/benchmark` on {platform.machine()}, Python "
-        f"{platform.python_version()}, {cpus()} CPUs. Seconds, median (least-most) of "
-        f"the repeated runs.",
+        f"Printed by `scripts/benchmark` on {machine()}. Seconds, median "
+        "(least-most) of the repeated runs.",
         "",
     ]
     for task, text in (
@@ -150,11 +149,6 @@ def set_ups(cases: list[dict[str, Any]]) -> list[str]:
                 power = np.polyfit(size, seconds, 1)[0]
                 lines.append(f"- {solver}, {task}: {power:.2f}")
     return [*lines, ""]
-
-
-def cpus() -> int:
-    """Return the number of CPUs this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
 
 
 def write_csv(path: Path, cases: list[dict[str, Any]]) -> None:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
 from pathlib import Path
 
 import click
-from threadpoolctl import threadpool_limits
 
 from eulerplateau.film import FILM_LOADS
+from scripts.studies.common import processes
 from scripts.studies.disk_thresholds.report import table, write_csv
 from scripts.studies.disk_thresholds.thresholds import MESHES, Case, thresholds
 
@@ -32,7 +30,7 @@ def main(films: tuple[str, ...], path: Path | None) -> None:
         for polygon, mesh in MESHES
         for number in range(len(MESHES[polygon, mesh]))
     ]
-    with ProcessPoolExecutor(initializer=partial(threadpool_limits, 1)) as pool:
+    with processes() as pool:
         found = list(pool.map(thresholds, cases))
     for film in films:
         click.echo(table(film, found))

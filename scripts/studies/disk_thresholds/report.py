@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from scripts.studies.common import markdown_table
 from scripts.studies.disk_thresholds.thresholds import (
     ACROSS,
     CIRCLE,
@@ -55,9 +56,7 @@ def table(film: str, every: Iterable[Thresholds]) -> str:
         if planar and polygon == CIRCLE:
             across, within = (order(here, part) for part in (0, 1))
             rows.append(["", "order", "", "", "", f"{across:.2f}", "", f"{within:.2f}"])
-    rule = ["---"] * 2 + ["---:"] * (len(rows[0]) - 2)
-    lines = ["| " + " | ".join(row) + " |" for row in (rows[0], rule, *rows[1:])]
-    return f"\n### {film.capitalize()}\n\n" + "\n".join(lines) + "\n"
+    return f"\n### {film.capitalize()}\n\n{markdown_table(rows, words=2)}"
 
 
 def cells(found: Thresholds) -> list[str]:

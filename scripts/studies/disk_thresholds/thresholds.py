@@ -12,8 +12,6 @@ from scipy.optimize import brentq
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.loop import project_lengths
-from eulerplateau.mesh import MeshSpec, generate
-from eulerplateau.settings import validate
 from eulerplateau.solvers import (
     Problem,
     TangentModel,
@@ -21,6 +19,7 @@ from eulerplateau.solvers import (
     make_problem,
     tangent_model,
 )
+from scripts.studies.common import make_mesh
 
 PI3 = np.pi**3
 # sigma_hat, derived in docs/films.md. Springs have no planar one: their meshes are not
@@ -76,7 +75,7 @@ class Thresholds:
 
 def thresholds(case: Case) -> Thresholds:
     """Locate both thresholds of a case."""
-    mesh = generate(validate(case.settings, MeshSpec, "mesh"))
+    mesh = make_mesh(**case.settings)
     problem = make_problem(mesh, case.film)
     turns = 2 * np.pi * np.arange(mesh.n_b) / mesh.n_b
     circle = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
-import platform
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import groupby
@@ -12,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from scripts.studies.common import machine
 from scripts.studies.error_vs_time.arithmetic import (
     BoolArray,
     fitted_order,
@@ -47,12 +46,11 @@ MARKERS = {
 def markdown(found: list[Measurement]) -> str:
     """Return the report's tables."""
     known = points(found)
-    cpus = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
     lines = [
         "# Error against run time",
         "",
-        f"Printed by `scripts/error_vs_time` on {platform.machine()}, Python "
-        f"{platform.python_version()}, {cpus} CPUs, one BLAS thread. CPU seconds, medians.",
+        f"Printed by `scripts/error_vs_time` on {machine()}, one BLAS thread. "
+        "CPU seconds, medians.",
         "",
         *_times(known),
         "",

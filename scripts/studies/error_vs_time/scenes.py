@@ -18,10 +18,10 @@ from scipy.optimize import minimize_scalar
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import PlanarFilm, planar_film
-from eulerplateau.mesh import DiskMesh, MeshSpec, generate
+from eulerplateau.mesh import DiskMesh
 from eulerplateau.mesh.polygon import ellipse, stretched_hexagon
-from eulerplateau.settings import validate
 from eulerplateau.solvers import make_problem
+from scripts.studies.common import make_mesh
 
 # Edge length deep inside over edge length at the loop, of graded meshes.
 GRADING = 4.0
@@ -86,8 +86,7 @@ class Scene:
         edge = float(np.linalg.norm(np.diff(corners, axis=0), axis=1).max())
         polygon = {"kind": "corners", "points": corners.tolist()}
         grading = GRADING if kind == "graded" else 1.0
-        data = {"polygon": polygon, "edge_length": edge, "grading": grading}
-        return generate(validate(data, MeshSpec, self.name))
+        return make_mesh(polygon=polygon, edge_length=edge, grading=grading)
 
     def start(self, mesh: DiskMesh) -> FloatArray:
         """Return every solver's start (n_v, 3): the rest mesh, bent out of its plane."""

@@ -18,7 +18,7 @@ from eulerplateau.pictures.curves import Run
 from eulerplateau.pictures.figure import save
 from eulerplateau.pictures.planar import plot_energy, plot_gallery
 from eulerplateau.runs import Row, load_run, run_sweep
-from scripts.studies.common import ROOT
+from scripts.studies.common import ROOT, markdown_table
 
 # Integral of |kappa_n| ds up to which a film is flat, as in scripts/transitions.
 FLAT = 1e-3
@@ -214,7 +214,12 @@ def page(labels: dict[str, str], found: dict[str, list[Number]]) -> str:
         if not numbers:
             rows.append([title, "no number in the paper", "", "", ""])
     others = [["figures", "why not"], *map(list, NOT_COMPUTED)]
-    parts = [INTRODUCTION, markdown(rows), "\n## Not computed here\n\n", markdown(others)]
+    parts = [
+        INTRODUCTION,
+        markdown_table(rows, words=2),
+        "\n## Not computed here\n\n",
+        markdown_table(others, words=2),
+    ]
     pictures = [f"\n## {labels[name]}\n\n![{name}](figures/{name}.png)\n" for name in found]
     return "".join([*parts, *pictures])
 
@@ -245,13 +250,6 @@ def cells(number: Number) -> list[str]:
     if abs(difference) > 1e-3 * number.paper:
         text += f" ({100 * difference / number.paper:+.1f} %)"
     return [number.name, paper, here, text]
-
-
-def markdown(rows: list[list[str]]) -> str:
-    """Return rows, the first of which is the head, as a Markdown table."""
-    rule = ["---"] * 2 + ["---:"] * (len(rows[0]) - 2)
-    lines = ["| " + " | ".join(row) + " |" for row in (rows[0], rule, *rows[1:])]
-    return "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":

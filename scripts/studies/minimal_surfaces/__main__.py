@@ -16,9 +16,9 @@ from eulerplateau.branches.continuation import follow
 from eulerplateau.branches.special import branches_from, special_points
 from eulerplateau.film import AreaFilm, chart_at, minimal
 from eulerplateau.film.harmonic import moved_with
-from eulerplateau.mesh import DiskMesh, MeshSpec, generate
-from eulerplateau.settings import validate
+from eulerplateau.mesh import DiskMesh
 from eulerplateau.solvers import make_problem, newton
+from scripts.studies.common import make_mesh
 
 # Loop edges of disks, and the load of the films that are compared.
 LOOPS = (48, 72, 96, 144)
@@ -86,8 +86,7 @@ def comparisons() -> Iterator[Comparison]:
     """Yield one comparison for each of LOOPS."""
     for loop_edges in LOOPS:
         polygon = {"kind": "ellipse", "aspect": 1.0}
-        settings = {"polygon": polygon, "edge_length": 2 * np.pi / loop_edges}
-        mesh = generate(validate(settings, MeshSpec, "mesh"))
+        mesh = make_mesh(polygon=polygon, edge_length=2 * np.pi / loop_edges)
         special = twist_point(mesh)
         loads, twists, last = [], [], None
         for point in follow(next(branches_from(special, SETTINGS)), SETTINGS):

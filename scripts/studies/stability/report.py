@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from scripts.studies.common import markdown_table
 from scripts.studies.stability.trials import Row
 
 # Head, and how a row is shown, for each column of the page.
@@ -43,10 +44,9 @@ def tables(rows: Sequence[Row]) -> str:
 
 
 def _table(group: str, rows: Sequence[Row]) -> str:
-    lines = [list(COLUMNS), ["---"] * len(COLUMNS)]
-    lines += [[show(row) for show in COLUMNS.values()] for row in rows]
-    body = "\n".join("| " + " | ".join(line) + " |" for line in lines)
-    return f"\n## {group[0].upper()}{group[1:]}\n\n{body}\n"
+    lines = [[show(row) for show in COLUMNS.values()] for row in rows]
+    table = markdown_table([list(COLUMNS), *lines], words=len(COLUMNS))
+    return f"\n## {group[0].upper()}{group[1:]}\n\n{table}"
 
 
 def _number(value: float) -> str:

@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.mesh import MeshSpec, generate
 from eulerplateau.solvers import Status, make_problem
+from scripts.studies.common import make_mesh
 from scripts.studies.stability import cases
 from scripts.studies.stability.cases import Disk, Outcome
 
@@ -112,7 +112,7 @@ def row(trial: Trial) -> Row:
 def hexagon(factor: float) -> Disk:
     """Return the paper's kind of mesh: a hexagon stretched along a diagonal."""
     polygon = {"kind": "stretched-hexagon", "factor": factor}
-    mesh = generate(MeshSpec.model_validate({"polygon": polygon, "vertices": 474}))
+    mesh = make_mesh(polygon=polygon, vertices=474)
     return cases.disk(mesh.x, mesh.triangles)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -11,7 +10,6 @@ from typing import Any
 
 import click
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FILM_LOADS
@@ -23,6 +21,7 @@ from eulerplateau.runs import RunSpec
 from eulerplateau.runs.sweep import Solver, make_mesh, start_shape, sweep
 from eulerplateau.settings import validate
 from eulerplateau.solvers import Equilibrium, Problem, Status, make_problem, solve
+from scripts.studies.common import processes
 from scripts.studies.transitions.report import (
     BENT,
     DISK,
@@ -83,7 +82,7 @@ def springs(path: Path | None) -> None:
         for size in SIZES
     ]
     over_starts = starts_and_steps()
-    with ProcessPoolExecutor(initializer=partial(threadpool_limits, 1)) as pool:
+    with processes() as pool:
         meshes = list(pool.map(locate, over_meshes))
         starts = dict(zip(over_starts, pool.map(locate, over_starts.values()), strict=True))
         hysteresis = pool.submit(locate, Case(HEXAGON, up + up[-2::-1], algorithm=5))
@@ -115,7 +114,7 @@ def tensioned(path: Path | None, film: str) -> None:
         for algorithm in ALGORITHMS
         for size in (*SIZES, FINEST)
     ]
-    with ProcessPoolExecutor(initializer=partial(threadpool_limits, 1)) as pool:
+    with processes() as pool:
         # The long ones first, so that no process is left with them.
         order = sorted(cases, key=lambda case: -case.vertices)
         found = dict(zip(order, pool.map(locate, order), strict=True))

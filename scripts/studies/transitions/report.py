@@ -11,6 +11,7 @@ import numpy as np
 
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.film.load import SPRING_TENSION
+from scripts.studies.common import markdown_table
 
 DISK, EIGHT, DOUBLE, BENT = "disk", "figure eight", "double disk", "not flat"
 # Names of transitions, by the states below and above them.
@@ -106,7 +107,7 @@ def mesh_table(polygon: str, meshes: Iterable[Found]) -> str:
         known = [paper(film, polygon, name) for name in names]
         scale = "" if film == "springs" else ", times 2√3"
         rows.append([f"paper{scale}", "474", "", *known])
-    return f"\n## {polygon.capitalize()}\n\n{markdown(rows)}"
+    return f"\n## {polygon.capitalize()}\n\n{markdown_table(rows, words=1)}"
 
 
 def paper(film: str, polygon: str, name: str | None) -> str:
@@ -156,7 +157,7 @@ def starts_table(starts: dict[str, Found]) -> str:
     """Return the Markdown table of the ways to reach the same transitions."""
     rows = [["start and sweep", *TWISTS]]
     rows += [[label, *cells(found, TWISTS)] for label, found in starts.items()]
-    return f"\n## Starts and sweeps\n\n{markdown(rows)}"
+    return f"\n## Starts and sweeps\n\n{markdown_table(rows, words=1)}"
 
 
 def sequence_table(found: Found) -> str:
@@ -167,7 +168,7 @@ def sequence_table(found: Found) -> str:
         for t in found.transitions
     ]
     title = f"{found.case.polygon.capitalize()}, algorithm {found.case.algorithm}"
-    return f"\n## {title}, up and down\n\n{markdown(rows)}"
+    return f"\n## {title}, up and down\n\n{markdown_table(rows, words=1)}"
 
 
 def cells(found: Found, names: Iterable[str]) -> list[str]:
@@ -180,13 +181,6 @@ def cell(transition: Transition) -> str:
     """Return the middle of the bracket and half its width."""
     middle = 0.5 * (transition.last + transition.first)
     return f"{middle:.3f} ± {abs(transition.first - middle):.3f}"
-
-
-def markdown(rows: list[list[str]]) -> str:
-    """Return rows, the first of which is the head, as a Markdown table."""
-    rule = ["---"] + ["---:"] * (len(rows[0]) - 1)
-    lines = ["| " + " | ".join(row) + " |" for row in (rows[0], rule, *rows[1:])]
-    return "\n".join(lines) + "\n"
 
 
 def write_csv(path: Path, meshes: Iterable[Found]) -> None:

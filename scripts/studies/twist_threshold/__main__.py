@@ -15,10 +15,10 @@ from threadpoolctl import threadpool_limits
 from eulerplateau.film import condense
 from eulerplateau.film.area import area
 from eulerplateau.loop import Loop, stress_stiffness
-from eulerplateau.mesh import DiskMesh, MeshSpec, generate
+from eulerplateau.mesh import DiskMesh
 from eulerplateau.mesh.polygon import ellipse_perimeter
-from eulerplateau.settings import validate
 from eulerplateau.solvers import Equilibrium, make_problem, newton
+from scripts.studies.common import make_mesh
 
 # The start, an ellipse, fixes which way the lobes lie and nothing else.
 ASPECT = 2.0
@@ -72,13 +72,12 @@ def thresholds() -> Iterator[Threshold]:
     for name, algorithm in ALGORITHMS.items():
         for grading in GRADINGS:
             for loop_edges in LOOPS:
-                settings = {
-                    "polygon": {"kind": "ellipse", "aspect": ASPECT},
-                    "edge_length": ellipse_perimeter(ASPECT) / loop_edges,
-                    "algorithm": algorithm,
-                    "grading": grading,
-                }
-                mesh = generate(validate(settings, MeshSpec, "mesh"))
+                mesh = make_mesh(
+                    polygon={"kind": "ellipse", "aspect": ASPECT},
+                    edge_length=ellipse_perimeter(ASPECT) / loop_edges,
+                    algorithm=algorithm,
+                    grading=grading,
+                )
                 yield twist(mesh, name, grading)
 
 

@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_limits
 
 from eulerplateau.mesh import load_mesh
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes
 
 ROOT = Path(__file__).parents[1]
@@ -47,4 +47,4 @@ def oval() -> DiskMesh:
 
 @pytest.fixture(scope="session")
 def oval_problem(oval: DiskMesh) -> Problem:
-    return make_problem(oval)
+    return Problem(oval)

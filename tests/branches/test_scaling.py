@@ -13,7 +13,7 @@ from eulerplateau.mesh.curvature import loop_frame, total_gauss_curvature
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.runs.sweep import sweep
 from eulerplateau.solvers.newton import solve
-from eulerplateau.solvers.problem import make_problem
+from eulerplateau.solvers.problem import Problem
 
 # Relative distances from the onset. Nearer, double precision leaves open where a hexagon's
 # saddle turns to; farther, b eps is no longer the only correction.
@@ -36,7 +36,7 @@ def critical_load(mesh: DiskMesh) -> float:
     It falls linearly, so each secant tells the crossing; going nine tenths of the way
     stays below it.
     """
-    problem = make_problem(mesh)
+    problem = Problem(mesh)
     first = solve(problem, mesh.x, np.zeros(mesh.n_b), 600.0)
     found = solve(problem, first.x, first.multipliers, 610.0)
     while True:
@@ -59,7 +59,7 @@ def measured(mesh: DiskMesh) -> Onset:
     noise = 1e-3 * np.random.default_rng(1).standard_normal(mesh.n_v)
     start = mesh.x + np.outer(noise, [0.0, 0.0, 1.0])
     curvatures = []
-    for found in sweep(make_problem(mesh), start, loads.tolist(), solve):
+    for found in sweep(Problem(mesh), start, loads.tolist(), solve):
         # Not n_unstable: a hexagon's saddle turns for nothing, which has no sign.
         assert found.residual < 1e-7
         frame = loop_frame(mesh, found.x)

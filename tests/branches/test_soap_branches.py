@@ -17,7 +17,7 @@ from eulerplateau.exact.planar import planar_film
 from eulerplateau.film.area import AreaFilm
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import newton
-from eulerplateau.solvers.problem import make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes, soap_films
 
 LIMITS = Limits(special_points=1, unstable_modes=2, stop=lambda point: point.load > 2000)
@@ -96,7 +96,7 @@ def test_pitchfork_is_subcritical() -> None:
 def test_planar_branch_is_the_plane_film_whatever_becomes_of_the_mesh() -> None:
     """Triangles are replaced on the way; loop, energy and direction go on as before."""
     mesh = regular_disk()
-    problem = make_problem(mesh, "area", plane=True)
+    problem = Problem(mesh, "area", in_plane=True)
     start = soap_films.two_lobed(mesh, 1600.0)
     points = []
     for point in follow(start, soap_films.SETTINGS):
@@ -135,8 +135,8 @@ def test_branch_from_the_disk_turns_into_the_two_lobed_film_on_an_uneven_mesh() 
     branches miss each other narrowly, and a step must not leap from one to the other."""
     points, triangles = shapes.disk_points(6, 0.1)
     mesh = shapes.mesh_of(points * [1.0, 0.999], triangles)
-    found = newton.solve(make_problem(mesh, "area"), mesh.x, np.zeros(mesh.n_b), 1400.0)
-    problem = make_problem(mesh, "area").near(found.x)
+    found = newton.solve(Problem(mesh, "area"), mesh.x, np.zeros(mesh.n_b), 1400.0)
+    problem = Problem(mesh, "area").near(found.x)
     start = first_point(problem, found.x[mesh.loop], 1400.0, soap_films.SETTINGS)
     limits = Limits(0, 2, stop=lambda point: point.load > 1700)
     branch = [visit.point for visit in explore(start, soap_films.SETTINGS, limits)]
@@ -153,7 +153,7 @@ def test_branch_from_the_disk_turns_into_the_two_lobed_film_on_an_uneven_mesh() 
 def test_round_disk_gives_way_to_two_lobes_any_way_they_lie() -> None:
     """At 48 pi^3 cos 2 phi and sin 2 phi go together; no load moves a round loop."""
     mesh = regular_disk()
-    problem = make_problem(mesh, "area").at(mesh.x)
+    problem = Problem(mesh, "area").at(mesh.x)
     start = first_point(problem, mesh.x[mesh.loop], 1380.0, soap_films.SETTINGS)
     limits = Limits(1, 2, stop=lambda point: point.load > 1600)
     found = list(explore(start, soap_films.SETTINGS, limits))

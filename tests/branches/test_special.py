@@ -20,7 +20,7 @@ from eulerplateau.branches.special import (
 )
 from eulerplateau.branches.symmetry import OPERATIONS, loop_distance
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import diagram
 from tests.helpers.diagram import SETTINGS, Diagram
 from tests.helpers.equilibria import planar
@@ -118,7 +118,7 @@ def test_index_changes_by_the_multiplicity(found: Diagram) -> None:
 
 def test_onset_of_the_hexagon_is_double(hexagon: DiskMesh) -> None:
     """A saddle may point any way: two modes are lost together, as one event."""
-    problem = make_problem(hexagon)
+    problem = Problem(hexagon)
     settings = Settings(load_range=(800.0, 900.0), load_unit=900.0)
     start = diagram.stable_point(problem, hexagon, 800.0, settings)
     (onset,) = specials_along(problem, start, settings)

@@ -9,7 +9,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.film.condensation import condense
 from eulerplateau.film.quadratic import dirichlet, springs
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes
 
 
@@ -26,7 +26,7 @@ def mesh(request: pytest.FixtureRequest) -> DiskMesh:
 
 @pytest.fixture
 def problem(mesh: DiskMesh) -> Problem:
-    return make_problem(mesh)
+    return Problem(mesh)
 
 
 def test_relaxed_film_is_in_balance_inside_to_rounding(

@@ -13,7 +13,7 @@ from eulerplateau.film.minimal_surface import is_flat, minimal
 from eulerplateau.film.repair import flipped
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers.equilibrium import Status
-from eulerplateau.solvers.problem import make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes, soap_films
 
 RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1
@@ -96,11 +96,11 @@ def test_waist_narrower_than_the_loops_edges_has_none() -> None:
 
 
 def test_vertices_of_a_flat_film_are_left_where_they_are(oval: DiskMesh) -> None:
-    problem = make_problem(oval, "area")
+    problem = Problem(oval, "area")
     turned = oval.x @ shapes.rotation().T
     assert is_flat(area(oval), turned)
     assert problem.freed(turned) is problem
-    assert make_problem(oval, "dirichlet").freed(turned).free is False
+    assert Problem(oval, "dirichlet").freed(turned).free is False
 
 
 @pytest.fixture(scope="module")

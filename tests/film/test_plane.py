@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from eulerplateau.film.plane_energy import PlaneEnergy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.film.plane import PlaneFilm, plane_film, polygon_area, polygon_gradient
-from eulerplateau.film.plane_energy import PlaneEnergy
 from eulerplateau.loop.lengths import project_lengths
 from eulerplateau.loop.loop import Loop
 from eulerplateau.mesh.curvature import loop_frame
@@ -19,7 +19,7 @@ from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import conjugate_gradient, newton
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.in_plane.newton import settle_in_plane
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import tangent_model
 from tests.helpers import shapes, twins
 from tests.helpers.equilibria import distance_up_to_motion
@@ -82,7 +82,7 @@ def test_mesh_that_is_not_flat_has_no_plane_to_be_kept_in(oval: DiskMesh) -> Non
         oval.x + 1e-6 * np.outer(oval.x[:, 0] ** 2, [0, 0, 1]), oval.triangles
     )
     with pytest.raises(MeshError) as caught:
-        make_problem(bent, "area", plane=True)
+        Problem(bent, "area", in_plane=True)
     assert caught.value.exit_code == 3
     assert (caught.value.kind, caught.value.index) == ("mesh", None)
 
@@ -96,7 +96,7 @@ def test_two_lobed_film_on_meshes_converges_at_second_order(
     errors = []
     for edges in EDGES:
         mesh = shapes.mesh_of(*shapes.disk_points(edges // 6, jitter))
-        problem = make_problem(mesh, "area", plane=True)
+        problem = Problem(mesh, "area", in_plane=True)
         start = mesh.x * [1.2, 0.8, 1.0]
         found = newton.solve(problem, start, np.zeros(mesh.n_b), sigma_hat)
         assert found.status is Status.CONVERGED
@@ -173,7 +173,7 @@ def test_three_lobed_saddle_is_reached_from_a_rough_guess() -> None:
 @pytest.mark.parametrize("solve", [newton.solve, conjugate_gradient.solve])
 def test_start_that_lies_face_down_is_turned_over(oval: DiskMesh, solve: Solver) -> None:
     """Its loop runs clockwise, round a negative area that more tension would enlarge."""
-    problem = make_problem(oval, "area", plane=True)
+    problem = Problem(oval, "area", in_plane=True)
     down, up = (
         solve(problem, oval.x * [1.0, side, 1.0], np.zeros(oval.n_b), 1000.0)
         for side in (-1.0, 1.0)
@@ -184,7 +184,7 @@ def test_start_that_lies_face_down_is_turned_over(oval: DiskMesh, solve: Solver)
 
 
 def test_film_turned_inside_out_is_no_equilibrium(oval: DiskMesh) -> None:
-    problem = make_problem(oval, "area", plane=True)
+    problem = Problem(oval, "area", in_plane=True)
     found = problem.equilibrium(
         oval.x * [1.0, -1.0, 1.0], np.zeros(oval.n_b), 100.0, Status.CONVERGED
     )
@@ -193,7 +193,7 @@ def test_film_turned_inside_out_is_no_equilibrium(oval: DiskMesh) -> None:
 
 def test_film_stays_in_its_plane_and_in_good_triangles(oval: DiskMesh) -> None:
     mesh = turned(oval)
-    problem = make_problem(mesh, "area", plane=True)
+    problem = Problem(mesh, "area", in_plane=True)
     film = problem.film
     assert isinstance(film, PlaneFilm)
     start = shapes.crumpled(mesh, 2e-3)

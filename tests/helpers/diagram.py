@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.exploration import Limits, Visit, explore
@@ -21,8 +22,7 @@ from eulerplateau.mesh.waist import (
     waist_twist,
 )
 from eulerplateau.solvers import newton
-from eulerplateau.solvers.condensed import loop_energy
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes
 from tests.helpers.equilibria import critical_point
 
@@ -68,7 +68,7 @@ class Diagram:
 def elongated() -> Diagram:
     """The diagram of runs/elongated.toml, a few seconds' work."""
     mesh = load_mesh(ROOT / "meshes" / "elongated.vtp")
-    problem = make_problem(mesh)
+    problem = Problem(mesh)
     start = stable_point(problem, mesh, 1.0, SETTINGS)
     return Diagram(mesh, problem, tuple(explore(start, SETTINGS, Limits())))
 
@@ -93,7 +93,7 @@ def folding_branch() -> tuple[Problem, BranchPoint, Settings]:
     """
     points, triangles = shapes.disk_points(6)
     mesh = shapes.mesh_of(points * [1.02, 1.0], triangles)
-    problem = make_problem(mesh)
+    problem = Problem(mesh)
     settings = Settings(load_range=(1400.0, 2100.0), load_unit=2000.0)
     x = close_with_lengths(problem.loop, mesh.x[mesh.loop] * [0.6, 1.6, 1.0])
     assert x is not None

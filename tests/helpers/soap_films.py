@@ -20,7 +20,7 @@ from eulerplateau.branches.special import SpecialPoint, branches_from, special_p
 from eulerplateau.film.area import AreaFilm
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import newton
-from eulerplateau.solvers.problem import make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes
 
 # The disk gives way across its plane to cos 2 phi here (sigma_hat).
@@ -56,7 +56,7 @@ def turn(angle: float) -> FloatArray:
 
 def two_lobed(mesh: DiskMesh, load: float, angle: float = 0.0) -> BranchPoint:
     """The planar two-lobed film, its long axis turned by `angle` against the mesh."""
-    problem = make_problem(mesh, "area")
+    problem = Problem(mesh, "area")
     oval = turn(angle) @ np.diag([1.25, 0.8, 1.0]) @ turn(angle).T
     found = newton.solve(problem, mesh.x @ oval, np.zeros(mesh.n_b), load)
     assert found.converged
@@ -89,7 +89,7 @@ def twisted_disk(mesh: DiskMesh, size: float, angle: float = 0.0) -> BranchPoint
 
     `size` is the r.m.s. displacement along cos 2 (phi - angle), in units of L.
     """
-    problem = make_problem(mesh, "area").at(mesh.x)
+    problem = Problem(mesh, "area").at(mesh.x)
     circle = mesh.x[mesh.loop]
     phi = np.arctan2(circle[:, 1], circle[:, 0])
     mode = np.outer(np.cos(2 * (phi - angle)), [0.0, 0.0, 1.0])

@@ -10,7 +10,7 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import kernels
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes, twins
 
 LOAD = 700.0
@@ -19,12 +19,12 @@ RNG = np.random.default_rng(11)
 
 
 def film(mesh: DiskMesh) -> twins.Field:
-    problem = make_problem(mesh)
+    problem = Problem(mesh)
     return lambda x: problem.film_energy(x, LOAD)
 
 
 def bending(mesh: DiskMesh) -> twins.Field:
-    return make_problem(mesh).bending_energy
+    return Problem(mesh).bending_energy
 
 
 def augmented(problem: Problem, base: FloatArray, lam: FloatArray) -> twins.Field:
@@ -78,7 +78,7 @@ def test_bending_energy_is_that_of_the_numpy_twin(
 def test_augmented_difference_is_the_difference_of_two_twins(oval: DiskMesh) -> None:
     base = shapes.crumpled(oval, 0.01)
     lam = 50 * RNG.standard_normal(oval.n_b)
-    field = augmented(make_problem(oval), base, lam)
+    field = augmented(Problem(oval), base, lam)
     for size in (1e-2, 1e-1, 1.0):
         u = size * RNG.standard_normal(base.shape)
         expected = twins.lagrangian(oval, base + u, LOAD, lam, PENALTY)
@@ -92,7 +92,7 @@ def test_augmented_difference_keeps_its_digits_for_displacements_of_1e_9(
     """It is a polynomial of u: what it is at 1e-9 follows from what it is at 1e-5."""
     base = shapes.crumpled(oval, 0.01)
     lam = 50 * RNG.standard_normal(oval.n_b)
-    problem = make_problem(oval)
+    problem = Problem(oval)
     field = augmented(problem, base, lam)
     u = 1e-9 * RNG.standard_normal(base.shape)
     slope = field(np.zeros_like(u))[1]
@@ -113,7 +113,7 @@ def test_gradient_has_taylor_slope_2(oval: DiskMesh, name: str) -> None:
     fields = {
         "film": film(oval),
         "bending": bending(oval),
-        "augmented": augmented(make_problem(oval), oval.x, RNG.standard_normal(oval.n_b)),
+        "augmented": augmented(Problem(oval), oval.x, RNG.standard_normal(oval.n_b)),
     }
     start = 0.01 * x if name == "augmented" else x
     for _ in range(3):
@@ -136,7 +136,7 @@ def test_quadratic_energy_has_no_remainder_beyond_second_order(
 def test_gradient_is_added_to_what_is_there(
     oval: DiskMesh, energy: Callable[[DiskMesh], twins.Field]
 ) -> None:
-    problem = make_problem(oval)
+    problem = Problem(oval)
     x = shapes.crumpled(oval, 0.02)
     there = np.ones_like(x)
     if energy is film:
@@ -166,7 +166,7 @@ def test_film_scales_as_length_squared_and_bending_as_one_over_length(
     oval: DiskMesh,
 ) -> None:
     x = shapes.crumpled(oval, 0.02)
-    problem = make_problem(oval)
+    problem = Problem(oval)
     scale = 3.7
     film_energy = problem.film_energy(scale * x, LOAD)[0]
     assert film_energy == pytest.approx(scale**2 * problem.film_energy(x, LOAD)[0])

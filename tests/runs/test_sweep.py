@@ -26,7 +26,7 @@ from eulerplateau.runs.sweep import (
 from eulerplateau.runs.table import Row, read_rows
 from eulerplateau.settings import validate
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import equilibria
 
 Spec = Callable[..., RunSpec]
@@ -268,7 +268,7 @@ def test_saved_shapes_are_the_equilibria_of_their_rows(
 ) -> None:
     row = run_sweep(spec([900]), tmp_path / "out").rows[0]
     points, _ = read_triangles(tmp_path / "out" / "shapes" / "shape_0000.vtp")
-    problem = make_problem(oval)
+    problem = Problem(oval)
     energy = problem.film_energy(points, 900.0)[0] + problem.bending_energy(points)[0]
     assert energy == pytest.approx(row.energy, rel=1e-12)
     assert problem.length_error(points) < 1e-12

@@ -17,7 +17,7 @@ from eulerplateau.solvers.equilibrium import (
     Equilibrium,
     Status,
 )
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.start import smooth_kick
 from tests.helpers import equilibria, shapes
 
@@ -39,7 +39,7 @@ def long() -> DiskMesh:
 
 
 def solve(name: str, mesh: DiskMesh, x: FloatArray, load: float) -> Equilibrium:
-    return SOLVERS[name](make_problem(mesh), x, np.zeros(mesh.n_b), load)
+    return SOLVERS[name](Problem(mesh), x, np.zeros(mesh.n_b), load)
 
 
 # From the plane, through twisted saddles, to folded films.
@@ -83,7 +83,7 @@ def test_every_solver_reaches_the_same_equilibrium_on_every_case(
 @pytest.mark.parametrize("load", [1000.0, 1700.0])
 def test_solvers_reach_the_same_soap_film(load: float, plane: bool) -> None:
     mesh = shapes.mesh_of(*shapes.disk_points(6))
-    problem = make_problem(mesh, "area", plane=plane)
+    problem = Problem(mesh, "area", in_plane=plane)
     start = shapes.crumpled(mesh, 1e-3) * [1.2, 0.8, 1.0]
     exact, cg = (
         solver(problem, start, np.zeros(mesh.n_b), load) for solver in SOLVERS.values()
@@ -101,7 +101,7 @@ def test_solvers_reach_the_same_soap_film(load: float, plane: bool) -> None:
 def test_uneven_loop_of_a_soap_film_ends_where_its_sliding_was_left(plane: bool) -> None:
     """Sliding costs what the edges differ by, an error of the mesh: it is not searched."""
     mesh = irregular()
-    problem = make_problem(mesh, "area", plane=plane)
+    problem = Problem(mesh, "area", in_plane=plane)
     start = shapes.crumpled(mesh, 1e-3)
     exact, cg = (
         solver(problem, start, np.zeros(mesh.n_b), 1000.0) for solver in SOLVERS.values()

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from eulerplateau.film.plane_energy import PlaneEnergy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.film.area import area
-from eulerplateau.film.plane_energy import PlaneEnergy
 from eulerplateau.loop.lengths import close_with_lengths
 from eulerplateau.loop.loop import Loop
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import newton
 from eulerplateau.solvers.equilibrium import Status
 from eulerplateau.solvers.in_plane.newton import COARSE, minimum_in_plane, settle_in_plane
-from eulerplateau.solvers.problem import make_problem
-from eulerplateau.solvers.second_variation import tangent_model
-from eulerplateau.solvers.spectrum import stability
+from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers.second_variation import stability, tangent_model
 from tests.helpers import shapes
 
 EDGES = (48, COARSE, 100, 2 * COARSE, 2 * COARSE + 1, 300)
@@ -137,7 +136,7 @@ def test_three_edges_cannot_move() -> None:
 def test_mesh_follows_without_folding_and_stays_good(sigma_hat: float) -> None:
     points, triangles = shapes.disk_points(14, jitter=0.1)
     mesh = shapes.mesh_of(points * [1.4, 0.7], triangles)
-    problem = make_problem(mesh, "area", plane=True)
+    problem = Problem(mesh, "area", in_plane=True)
     found = newton.solve(problem, mesh.x, np.zeros(mesh.n_b), sigma_hat)
     assert found.status is Status.CONVERGED
     if found.triangles is not None:
@@ -158,7 +157,7 @@ def test_fan_about_one_vertex_needs_no_better_mesh() -> None:
     )
     energies = []
     for inside in (mesh, fan):
-        problem = make_problem(inside, "area", plane=True)
+        problem = Problem(inside, "area", in_plane=True)
         found = newton.solve(problem, inside.x, np.zeros(inside.n_b), 2400.0)
         assert found.status is Status.CONVERGED
         energies.append(found.energy)

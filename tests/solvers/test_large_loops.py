@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.lengths import jacobian, length_metric
@@ -11,18 +12,17 @@ from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.motions import rigid_motions
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import newton
-from eulerplateau.solvers.condensed import loop_energy
 from eulerplateau.solvers.large_loops.coarse_start import coarsen
 from eulerplateau.solvers.large_loops.shifted_inverse import shifted_inverse, tangent_space
 from eulerplateau.solvers.large_loops.subspace_model import lowest_modes, subspace_model
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import (
     LoopEnergy,
     TangentModel,
     lagrangian_hessian,
+    stability,
     tangent_model,
 )
-from eulerplateau.solvers.spectrum import stability
 from eulerplateau.solvers.trust_region import trust_region_step
 from tests.helpers import equilibria, shapes
 
@@ -38,7 +38,7 @@ def disk_film(n: int, sigma_hat: float) -> FloatArray:
 
 @pytest.fixture(scope="module")
 def problem(elongated: DiskMesh) -> Problem:
-    return make_problem(elongated)
+    return Problem(elongated)
 
 
 @pytest.fixture(scope="module")
@@ -211,7 +211,7 @@ def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_subspaces(
     hexagon: DiskMesh, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(newton, "DENSE_LOOP", 40)
-    problem = make_problem(hexagon)
+    problem = Problem(hexagon)
     x = shapes.crumpled(hexagon, 1e-3)
     for load in (800.0, 860.0, 900.0, 1000.0):
         found = newton.solve(problem, x, np.zeros(hexagon.n_b), load)

@@ -6,15 +6,15 @@ import json
 
 import numpy as np
 import pytest
+from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.sweep import run_sweep
 from eulerplateau.settings import validate
 from eulerplateau.solvers import newton
-from eulerplateau.solvers.condensed import loop_energy
 from eulerplateau.solvers.modes import lowest_modes
 from eulerplateau.solvers.newton import solve
-from eulerplateau.solvers.problem import make_problem
+from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import tangent_model
 from tests.conftest import ROOT
 
@@ -23,7 +23,7 @@ from tests.conftest import ROOT
 def test_lowest_mode_has_the_lowest_eigenvalue_and_keeps_lengths(
     elongated, monkeypatch, dense
 ):
-    problem = make_problem(elongated)
+    problem = Problem(elongated)
     found = solve(problem, elongated.x, np.zeros(elongated.n_b), 700.0)
     if not dense:
         monkeypatch.setattr("eulerplateau.solvers.second_variation.DENSE_LOOP", 40)
@@ -40,7 +40,7 @@ def test_lowest_mode_has_the_lowest_eigenvalue_and_keeps_lengths(
 
 
 def test_mode_of_the_planar_film_at_its_onset_is_transverse(elongated):
-    problem = make_problem(elongated)
+    problem = Problem(elongated)
     found = solve(problem, elongated.x, np.zeros(elongated.n_b), 671.0)
     mode = lowest_modes(problem, found, 1)["mode_0"]
     assert np.sum(mode[:, 2] ** 2) == pytest.approx(np.sum(mode**2), rel=1e-9)

@@ -11,7 +11,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import newton
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import equilibria, shapes
 
 
@@ -62,7 +62,7 @@ def test_starts_that_look_nothing_like_the_mesh_reach_a_minimum(
 def test_a_hundred_random_starts_of_the_papers_size_reach_a_minimum(
     elongated: DiskMesh, load: float
 ) -> None:
-    problem = make_problem(elongated)
+    problem = Problem(elongated)
     for seed in range(100):
         noise = np.random.default_rng(seed).standard_normal(elongated.x.shape)
         size = (1e-3, 1e-2, 0.1)[seed % 3]
@@ -131,7 +131,7 @@ def test_exactly_flat_start_beyond_the_onset_leaves_the_plane(
     request: pytest.FixtureRequest, name: str, load: float
 ) -> None:
     mesh: DiskMesh = request.getfixturevalue(name)
-    problem = make_problem(mesh)
+    problem = Problem(mesh)
     assert (mesh.x[:, 2] == 0).all()
     found = solve(problem, mesh.x, load)
     assert_minimum(problem, found)
@@ -147,7 +147,7 @@ def test_exactly_flat_start_below_the_onset_stays_in_the_plane(
     request: pytest.FixtureRequest, name: str
 ) -> None:
     mesh: DiskMesh = request.getfixturevalue(name)
-    problem = make_problem(mesh)
+    problem = Problem(mesh)
     found = solve(problem, mesh.x, 600.0)
     assert_minimum(problem, found)
     assert np.abs(found.x[:, 2]).max() < 1e-4
@@ -158,7 +158,7 @@ def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_iteration(
     hexagon: DiskMesh, load: float
 ) -> None:
     """Just beyond the onset the hexagon's saddle hardly feels in which direction it is."""
-    problem = make_problem(hexagon)
+    problem = Problem(hexagon)
     found = solve(problem, shapes.crumpled(hexagon, 1e-3), load)
     assert_minimum(problem, found)
     assert found.iterations < 100

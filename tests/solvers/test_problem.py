@@ -7,7 +7,7 @@ import pytest
 
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers.equilibrium import Status
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import equilibria, shapes, twins
 
 LOAD = 700.0
@@ -94,7 +94,7 @@ def test_energy_of_a_disk_converges_to_sigma_over_4_pi_plus_4_pi_squared() -> No
     sigma_hat, sizes, errors = 1234.0, [], []
     for rings in (6, 12, 24):
         mesh = shapes.mesh_of(*shapes.disk_points(rings))
-        problem = make_problem(mesh, "dirichlet")
+        problem = Problem(mesh, "dirichlet")
         x = problem.condensed.extend(mesh.x[mesh.loop])
         np.testing.assert_allclose(x, mesh.x, atol=1e-13)  # already relaxed
         energy = problem.film_energy(x, sigma_hat)[0] + problem.bending_energy(x)[0]
@@ -115,5 +115,5 @@ def test_spring_film_of_an_unstructured_disk_has_that_energy_to_a_percent(
         hexagon.x[hexagon.triangles[:, 2]] - hexagon.x[hexagon.triangles[:, 0]],
     )[:, 2]
     expected = np.sqrt(12) * area.sum() / 2 - (hexagon.rest_lengths**2).sum() / 2
-    energy = make_problem(hexagon).film_energy(hexagon.x, 1.0)[0]
+    energy = Problem(hexagon).film_energy(hexagon.x, 1.0)[0]
     assert energy == pytest.approx(expected, rel=0.01)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from eulerplateau.solvers.condensed import loop_energy
 from scipy.linalg import eigh
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import area
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import newton
-from eulerplateau.solvers.condensed import loop_energy
 from eulerplateau.solvers.equilibrium import (
     LENGTH_TOLERANCE,
     RESIDUAL_TOLERANCE,
@@ -18,7 +18,7 @@ from eulerplateau.solvers.equilibrium import (
     Status,
 )
 from eulerplateau.solvers.modes import lowest_modes
-from eulerplateau.solvers.problem import Problem, make_problem
+from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import tangent_model
 from tests.helpers import shapes, soap_films
 
@@ -45,7 +45,7 @@ def mesh() -> DiskMesh:
 def test_same_film_is_reached_from_flat_rough_and_turned_starts(
     mesh: DiskMesh, load: float
 ) -> None:
-    problem = make_problem(mesh, "area")
+    problem = Problem(mesh, "area")
     rough = shapes.crumpled(mesh, 2e-3) * OVAL
     bowl = mesh.x * OVAL + np.outer((mesh.x**2).sum(axis=1), [0.0, 0.0, 0.5])
     starts = (mesh.x * OVAL, rough, bowl, rough @ shapes.rotation().T + [1.0, 2.0, 3.0])
@@ -62,7 +62,7 @@ def test_flat_film_is_the_one_that_is_kept_in_its_plane(
     mesh: DiskMesh, load: float
 ) -> None:
     space, plane = (
-        solve(make_problem(mesh, "area", plane=plane), mesh.x * OVAL, load)
+        solve(Problem(mesh, "area", in_plane=plane), mesh.x * OVAL, load)
         for plane in (False, True)
     )
     assert space.energy == pytest.approx(plane.energy, rel=1e-9)
@@ -72,7 +72,7 @@ def test_flat_film_is_the_one_that_is_kept_in_its_plane(
 
 def test_energy_rises_with_the_tension_as_fast_as_the_film_is_large(mesh: DiskMesh) -> None:
     """dE/d sigma_hat = area along equilibria; central differences converge to it."""
-    problem = make_problem(mesh, "area")
+    problem = Problem(mesh, "area")
     here = solve(problem, mesh.x * OVAL, 1700.0)
     steps, errors = [80.0, 40.0, 20.0], []
     for step in steps:
@@ -83,10 +83,10 @@ def test_energy_rises_with_the_tension_as_fast_as_the_film_is_large(mesh: DiskMe
 
 def test_rigid_motions_and_units_change_nothing(mesh: DiskMesh) -> None:
     start = shapes.crumpled(mesh, 1e-3) * OVAL
-    plain = solve(make_problem(mesh, "area"), start, 1700.0)
+    plain = solve(Problem(mesh, "area"), start, 1700.0)
     turn = shapes.rotation()
     moved = DiskMesh.from_triangles(4 * mesh.x @ turn.T, mesh.triangles)
-    other = solve(make_problem(moved, "area"), start @ turn.T + 0.5, 1700.0)
+    other = solve(Problem(moved, "area"), start @ turn.T + 0.5, 1700.0)
     assert other.energy == pytest.approx(plain.energy, rel=1e-11)
     assert other.lowest_eigenvalue == pytest.approx(plain.lowest_eigenvalue, rel=1e-8)
     np.testing.assert_allclose(other.x, plain.x @ turn.T + 0.5, atol=1e-8)
@@ -96,7 +96,7 @@ def test_long_way_leaves_good_triangles_and_the_same_loop() -> None:
     """From four times as long as wide to a disk."""
     points, triangles = shapes.disk_points(8, jitter=0.1)
     mesh = shapes.mesh_of(points * [4.0, 1.0], triangles)
-    found = solve(make_problem(mesh, "area"), mesh.x, 500.0)
+    found = solve(Problem(mesh, "area"), mesh.x, 500.0)
     assert found.triangles is not None
     film = area(mesh).retiled(found.triangles)
     assert film.sides(found.x).smallest_angle > 12
@@ -109,7 +109,7 @@ def test_long_way_leaves_good_triangles_and_the_same_loop() -> None:
 @pytest.mark.parametrize("load", LOADS)
 def test_film_at_rest_has_no_mean_curvature_inside(mesh: DiskMesh, load: float) -> None:
     """The area's gradient vanishes at every interior vertex of a flat film: all of it."""
-    problem = make_problem(mesh, "area")
+    problem = Problem(mesh, "area")
     found = solve(problem, shapes.crumpled(mesh, 1e-3) * OVAL, load)
     film = area(mesh)
     if found.triangles is not None:
@@ -121,7 +121,7 @@ def test_film_at_rest_has_no_mean_curvature_inside(mesh: DiskMesh, load: float) 
 def test_softest_mode_of_the_two_lobed_film_twists_it_across_its_plane(
     mesh: DiskMesh,
 ) -> None:
-    problem = make_problem(mesh, "area")
+    problem = Problem(mesh, "area")
     found = solve(problem, mesh.x * OVAL, 1750.0)
     if found.triangles is not None:
         problem = problem.with_triangles(found.triangles)
@@ -141,7 +141,7 @@ def thresholds(mesh: DiskMesh) -> tuple[FloatArray, FloatArray]:
     On the disk's branch neither shape nor basis changes and the Hessian is linear in the
     load: H = H_0 - load H_1 is singular where 1 / load is an eigenvalue of H_1 in H_0.
     """
-    problem = make_problem(mesh, "area")
+    problem = Problem(mesh, "area")
     bare, loaded = (
         tangent_model(loop_energy(problem, load), mesh.x[mesh.loop]) for load in (0.0, 1e3)
     )

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.load import SPRING_TENSION
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.condensed import loop_energy
-from eulerplateau.solvers.problem import Problem, make_problem
-from eulerplateau.solvers.second_variation import LoopEnergy, TangentModel, tangent_model
-from eulerplateau.solvers.spectrum import Stability, stability
+from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers.second_variation import (
+    LoopEnergy,
+    Stability,
+    TangentModel,
+    stability,
+    tangent_model,
+)
 from tests.helpers import equilibria, shapes
 
 # Mode n of an inextensible ring with energy int |x''|^2 ds and radius R = 1 / 2 pi, in the
@@ -34,7 +39,7 @@ def within(n: int) -> float:
 def disk_problem(rings: int) -> tuple[DiskMesh, Problem]:
     """A disk whose film is exactly the Dirichlet energy; the load is sigma_hat."""
     mesh = shapes.mesh_of(*shapes.disk_points(rings))
-    return mesh, make_problem(mesh, "dirichlet")
+    return mesh, Problem(mesh, "dirichlet")
 
 
 def split(model: TangentModel, n: int) -> tuple[FloatArray, FloatArray]:
@@ -154,7 +159,7 @@ def near_zero(model: TangentModel, x: FloatArray, where: str, n: int) -> float:
 
 def onset(mesh: DiskMesh) -> float:
     """Load k at which the planar film first gives way, by bisection."""
-    problem, low, high = make_problem(mesh), 700.0, 900.0
+    problem, low, high = Problem(mesh), 700.0, 900.0
     x = equilibria.planar(problem, mesh, [100, 300, 500, low])[-1].x
     while high - low > 1e-3:
         middle = 0.5 * (low + high)

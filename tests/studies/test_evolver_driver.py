@@ -10,7 +10,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.problem import make_problem
+from eulerplateau.solvers.problem import Problem
 from scripts.studies.error_vs_time import evolver
 from scripts.studies.error_vs_time.evolver_files import (
     film_datafile,
@@ -186,7 +186,7 @@ def evolver_bending(x: FloatArray) -> float:
 
 def bending(mesh: DiskMesh) -> float:
     """The bending energy of a mesh at rest."""
-    return make_problem(mesh).bending_energy(mesh.x)[0]
+    return Problem(mesh).bending_energy(mesh.x)[0]
 
 
 def test_bending_of_evolver_and_ours_differ_by_a_twelfth_of_the_squared_angle() -> None:

@@ -11,7 +11,7 @@ from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.settings import validate
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
-from eulerplateau.solvers.problem import make_problem
+from eulerplateau.solvers.problem import Problem
 from tests.helpers import equilibria
 from tests.helpers.extremes import FIXED, cases, oval
 
@@ -33,7 +33,7 @@ def test_load_next_to_nothing_adds_its_film_to_the_bare_loop_to_1e_11(
     """E(l) = E(0) + l F(0) + O(l^2), the loop being that of least bending energy."""
     bare, found = solved(film, 0.0), solved(film, load)
     assert found.status is Status.CONVERGED
-    slope = make_problem(oval().mesh, film).film_energy(bare.x, 1.0)[0]
+    slope = Problem(oval().mesh, film).film_energy(bare.x, 1.0)[0]
     assert found.energy == pytest.approx(bare.energy + load * slope, rel=1e-11)
     assert found.film_energy == pytest.approx(load * slope, rel=1e-6)
 
@@ -58,7 +58,7 @@ def test_load_beyond_the_mesh_ends_and_is_never_called_converged(
     film: str, load: float, solver: str
 ) -> None:
     case = oval(4)
-    problem = cases.make_problem(case.mesh, film)
+    problem = cases.Problem(case.mesh, film)
     found = cases.SOLVERS[solver](
         problem,
         case.mesh.x + case.displacement,
@@ -135,7 +135,7 @@ def test_largest_turning_of_a_bent_square_is_the_angle_it_is_bent_by(angle: floa
 @pytest.mark.parametrize("bend", [1.0, 1.5, 2.0, 3.0])
 def test_any_record_is_judged_by_its_loop_alone(bend: float) -> None:
     """The rule is the problem's: solvers and branches ask it about every shape."""
-    problem = make_problem(oval().mesh)
+    problem = Problem(oval().mesh)
     guess = oval().mesh.x[problem.loop_vertices] * [bend, 1.0, 1.0]
     x_loop = close_with_lengths(problem.loop, guess)
     assert x_loop is not None
@@ -145,7 +145,7 @@ def test_any_record_is_judged_by_its_loop_alone(bend: float) -> None:
 
 
 def test_failures_keep_their_own_status() -> None:
-    problem = make_problem(cases.polygon(5).mesh)
+    problem = Problem(cases.polygon(5).mesh)
     for status in set(Status) - {Status.CONVERGED}:
         found = problem.equilibrium(cases.polygon(5).mesh.x, np.zeros(5), 1.0, status)
         assert problem.judged(found).status is status

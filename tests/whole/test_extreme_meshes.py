@@ -131,7 +131,7 @@ def test_short_loop_edge_leaves_the_energy_its_digits(
 def test_cg_with_a_short_loop_edge_is_right_or_not_called_converged(ratio: float) -> None:
     case = cases.short_edge(oval(3), ratio)
     result = cases.SOLVERS["cg"](
-        cases.make_problem(case.mesh, "springs"),
+        cases.Problem(case.mesh, "springs"),
         case.mesh.x + case.displacement,
         np.zeros(18),
         300.0,

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.motions import rigid_motions
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import newton
-from eulerplateau.solvers.condensed import loop_energy
-from eulerplateau.solvers.problem import Problem, make_problem
-from eulerplateau.solvers.spectrum import stability
+from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers.second_variation import stability
 from tests.helpers import equilibria, shapes
 
 
@@ -56,7 +56,7 @@ def test_morse_index_of_planar_films_is_that_of_the_whole_film(
     long_lattice: DiskMesh,
 ) -> None:
     """Along the planar branch: stable, then with one unstable mode, then with two."""
-    problem, met = make_problem(long_lattice), []
+    problem, met = Problem(long_lattice), []
     loads = [100, 250, 400, 550, 700, 850, 1000]
     models = equilibria.planar(problem, long_lattice, loads)
     for load, model in zip(loads, models, strict=True):
@@ -76,7 +76,7 @@ def test_morse_index_of_a_regular_hexagon_jumps_by_two_and_that_of_its_saddle_is
 ):
     """Its sixfold symmetry makes the twofold modes a pair."""
     mesh = shapes.mesh_of(*shapes.hexagon_points(5))
-    problem = make_problem(mesh)
+    problem = Problem(mesh)
     loads = [100.0, 500.0, 900.0]
     indices = []
     for load, model in zip(loads, equilibria.planar(problem, mesh, loads), strict=True):

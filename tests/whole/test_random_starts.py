@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers.newton import solve
-from eulerplateau.solvers.problem import make_problem
+from eulerplateau.solvers.problem import Problem
 
 STARTS = 200
 
@@ -34,7 +34,7 @@ def random_start(mesh: DiskMesh, seed: int) -> NDArray[np.float64]:
 @pytest.mark.slow
 @pytest.mark.parametrize("load", [500.0, 700.0, 800.0, 1500.0, 3000.0, 10000.0])
 def test_99_of_100_random_starts_end_stable_and_the_rest_say_why_not(elongated, load):
-    problem = make_problem(elongated)
+    problem = Problem(elongated)
     nothing = np.zeros(elongated.n_b)
     ends: Counter[str] = Counter()
     for seed in range(STARTS):

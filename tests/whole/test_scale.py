@@ -70,7 +70,7 @@ import json, resource, time
 import numpy as np
 from eulerplateau import newton
 from eulerplateau.meshing import MeshSpec, generate
-from eulerplateau.problem import make_problem
+from eulerplateau.problem import Problem
 from threadpoolctl import threadpool_limits
 
 polygon = {"kind": "stretched-hexagon", "factor": 2.0}
@@ -79,7 +79,7 @@ x = mesh.x.copy()
 x[:, 2] += 1e-3 * np.random.default_rng(1).standard_normal(mesh.n_v)
 with threadpool_limits(1, user_api="blas"):
     started = time.perf_counter()
-    problem = make_problem(mesh)
+    problem = Problem(mesh)
     problem.condensed
     seconds = [time.perf_counter() - started]
     for load in (700.0, 705.0):

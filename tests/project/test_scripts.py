@@ -1,25 +1,35 @@
 """The set-up: made once, redone when it must be, recovered when interrupted.
 
 The logic is tried with a stand-in for Python, in a second; continuous integration does the
-real thing, because it starts from a fresh clone.
+real thing, because it starts from a fresh clone. Nothing is ever installed here: besides
+the few programs they are made of, all that the scripts find is a stand-in for apt-get.
 """
 
 from __future__ import annotations
 
 import os
 import shutil
-import subprocess
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from tests.helpers.processes import PATIENCE, Process, started
+
 ROOT = Path(__file__).parents[2]
 
+# What the scripts and the stand-ins call; a system without flock does without.
+TOOLS = ["bash", "cat", "cp", "dirname", "env", "flock", "head", "mkdir", "mv"]
+TOOLS += ["readlink", "rm", "sleep", "tail", "touch"]
+
 # Notes what it is asked to do. `-m venv` copies it into place, as Python does with itself.
-STAND_IN = """#!/usr/bin/env bash
+PYTHON = """#!/usr/bin/env bash
 case "$*" in
 *version_info*) echo "$VERSION" ;;
+*ensurepip*) eval "$HAS_VENV" ;;
+*ctypes*) [[ -e $HOME/libraries ]] || echo "$LACKING" ;;
 "-I "*) ;;
 *"-m venv "*)
     mkdir -p "$3/bin" && cp "$0" "$3/bin/python"
@@ -37,6 +47,20 @@ case "$*" in
 esac
 """
 
+# Notes the command and the packages, without the options and their values.
+APT = """#!/usr/bin/env bash
+words=()
+for word; do
+    case $word in -* | *=*) ;; *) words+=("$word") ;; esac
+done
+printf '%s\\n' "apt-get ${words[*]}" >>"$JOURNAL"
+eval "$DURING_APT"
+"""
+
+ID = """#!/usr/bin/env bash
+echo "$USER_ID"
+"""
+
 
 @dataclass
 class Clone:
@@ -49,35 +73,54 @@ class Clone:
     def journal(self) -> Path:
         return self.home / "journal"
 
-    def start(self, *command: str, **variables: str) -> subprocess.Popen[bytes]:
+    @property
+    def programs(self) -> Path:
+        """The one folder in which the scripts find programs."""
+        return self.home / "programs"
+
+    def add_program(self, name: str, text: str) -> None:
+        path = self.programs / name
+        path.write_text(text)
+        path.chmod(0o755)
+
+    def start(self, *command: str, **variables: str) -> AbstractContextManager[Process]:
         """Start scripts/... from the home directory; `variables` change the environment."""
         environment = {
-            "PATH": os.environ["PATH"],
+            "PATH": str(self.programs),
             "HOME": str(self.home),
-            "PYTHON": str(self.home / "python"),
+            "PYTHON": str(self.programs / "python"),
             "JOURNAL": str(self.journal),
+            "USER_ID": "1000",
             "VERSION": "3.12.1",
+            "HAS_VENV": "true",
+            "LACKING": "",
+            "DURING_APT": "false",
             "DURING_PIP": "true",
             "FAILING": "eulerplateau",
             "EXIT_CODE": "4",
         }
         script, *arguments = command
-        return subprocess.Popen(
+        return started(
             [str(self.path / "scripts" / script), *arguments],
             cwd=self.home,
             env=environment | variables,
-            stderr=subprocess.DEVNULL,
         )
 
     def run(self, *command: str, **variables: str) -> tuple[int, list[str]]:
-        """Return the exit code and what was asked of Python in this run."""
+        """Return the exit code and what was asked of Python and apt-get in this run."""
         self.journal.write_text("")
-        code = self.start(*command, **variables).wait(timeout=60)
-        return code, self.journal.read_text().splitlines()
+        with self.start(*command, **variables) as process:
+            process.communicate(timeout=PATIENCE)
+        return process.returncode, self.journal.read_text().splitlines()
 
 
 SWEEP = "-P -m eulerplateau sweep"
 SET_UP = ["venv", "pip", "pip"]
+
+
+def apt(*packages: str) -> list[str]:
+    """Return what is asked of apt-get to install `packages`."""
+    return ["apt-get update", f"apt-get install {' '.join(packages)}"]
 
 
 @pytest.fixture
@@ -87,10 +130,13 @@ def clone(tmp_path: Path) -> Clone:
     shutil.copytree(ROOT / "scripts", path / "scripts")
     for name in ("requirements.lock", "pyproject.toml"):
         shutil.copy(ROOT / name, path)
-    python = tmp_path / "python"
-    python.write_text(STAND_IN)
-    python.chmod(0o755)
-    return Clone(path, tmp_path)
+    clone = Clone(path, tmp_path)
+    clone.programs.mkdir()
+    for tool in filter(shutil.which, TOOLS):
+        (clone.programs / tool).symlink_to(str(shutil.which(tool)))
+    for name, text in (("python", PYTHON), ("apt-get", APT), ("id", ID)):
+        clone.add_program(name, text)
+    return clone
 
 
 @pytest.fixture
@@ -163,8 +209,11 @@ def test_interrupted_change_is_redone_from_nothing(ready: Clone) -> None:
 
 def test_two_first_starts_at_once_set_up_once(clone: Clone) -> None:
     clone.journal.write_text("")
-    starts = [clone.start("sweep", DURING_PIP="sleep 0.2") for _ in range(2)]
-    assert [start.wait(timeout=60) for start in starts] == [4, 4]
+    start = partial(clone.start, "sweep", DURING_PIP="sleep 0.2")
+    with start() as one, start() as two:
+        for process in (one, two):
+            process.communicate(timeout=PATIENCE)
+            assert process.returncode == 4
     assert clone.journal.read_text().splitlines() == [*SET_UP, SWEEP, SWEEP]
 
 
@@ -197,6 +246,67 @@ def test_every_check_runs_and_any_failure_counts(ready: Clone, failing: str) -> 
 def test_slow_runs_the_slow_tests_only(ready: Clone) -> None:
     assert ready.run("test", "--slow", "-x") == (0, ["-m pytest -m slow -x"])
     assert ready.run("test", "--slow", FAILING="pytest", EXIT_CODE="5")[0] == 1
+
+
+AS_ROOT = {"USER_ID": "0"}
+
+# What needs programs that are no Python packages, and the packages that bring them.
+NEEDS = [
+    (["test", "--slow"], ["chromium", "chromium-driver"], ["chromium", "chromedriver"]),
+    (["error_vs_time"], ["evolver-nox"], ["evolver-nox-d"]),
+]
+
+
+@pytest.mark.parametrize(("command", "packages", "programs"), NEEDS)
+def test_root_installs_the_programs_a_script_needs_and_has_not(
+    ready: Clone, command: list[str], packages: list[str], programs: list[str]
+) -> None:
+    then = ready.run(*command)
+    assert ready.run(*command, **AS_ROOT) == (then[0], [*apt(*packages), *then[1]])
+    for program in programs:
+        ready.add_program(program, "#!/bin/sh\n")
+    assert ready.run(*command, **AS_ROOT) == then
+
+
+@pytest.mark.parametrize(("command", "packages", "programs"), NEEDS)
+def test_nothing_is_installed_without_root_or_apt(
+    ready: Clone, command: list[str], packages: list[str], programs: list[str]
+) -> None:
+    code, asked = ready.run(*command)
+    assert code == 0
+    assert not [line for line in asked if line.startswith("apt-get")]
+    (ready.programs / "apt-get").unlink()
+    assert ready.run(*command, **AS_ROOT) == (code, asked)
+
+
+def test_root_installs_missing_libraries_while_setting_up(clone: Clone) -> None:
+    lacking = AS_ROOT | {"LACKING": "libone libtwo"}
+    # An apt that fails stops nothing, and is not asked again.
+    wanted = apt("libone", "libtwo")
+    assert clone.run("sweep", **lacking) == (4, [*SET_UP, *wanted, SWEEP])
+    assert clone.run("sweep", **lacking) == (4, [SWEEP])
+
+
+def test_that_all_libraries_were_found_is_remembered(clone: Clone) -> None:
+    lacking = AS_ROOT | {"LACKING": "libone"}
+    code, asked = clone.run("sweep", **lacking, DURING_APT='touch "$HOME/libraries"')
+    assert (code, asked) == (4, [*SET_UP, *apt("libone"), SWEEP])
+    assert (clone.path / ".venv" / "libraries-found").exists()
+
+
+def test_a_user_without_the_libraries_is_set_up_all_the_same(clone: Clone) -> None:
+    assert clone.run("sweep", LACKING="libone") == (4, [*SET_UP, SWEEP])
+
+
+def test_root_installs_the_venv_module_where_it_is_a_package_of_its_own(
+    clone: Clone,
+) -> None:
+    need = {"HAS_VENV": "[[ -e $HOME/module ]]"}
+    wanted = apt("python3.12-venv")
+    assert clone.run("sweep", **need) == (1, [])
+    assert clone.run("sweep", **need, **AS_ROOT) == (1, wanted)
+    code, asked = clone.run("sweep", **need, **AS_ROOT, DURING_APT='touch "$HOME/module"')
+    assert (code, asked) == (4, [*wanted, *SET_UP, SWEEP])
 
 
 @pytest.mark.parametrize("script", ["scripts/sweep", "scripts/test", ".ci/run"])

@@ -1,0 +1,50 @@
+"""Programs that tests start and do not merely run: none of them outlives its test."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+# Seconds. Only what hangs takes so long, however busy the machine.
+PATIENCE = 600.0
+
+Process = subprocess.Popen[str]
+
+
+@contextmanager
+def started(
+    command: list[str],
+    *,
+    cwd: Path | None = None,
+    env: dict[str, str] | None = None,
+) -> Iterator[Process]:
+    """Start a program that can be interrupted; in the end kill all that is left of it.
+
+    It has a process group of its own, so "all" includes what it started itself.
+    """
+    # A signal that is ignored stays so in every child, as SIGINT does below `nohup ... &`;
+    # one that is handled, by whatever function, has its default effect there.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        process = subprocess.Popen(
+            command,
+            cwd=cwd,
+            env=env,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+    finally:
+        signal.signal(signal.SIGINT, before)
+    with process:  # which waits, and closes the pipes
+        try:
+            yield process
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)

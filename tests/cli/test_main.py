@@ -14,6 +14,7 @@ import pytest
 from eulerplateau.mesh import load_mesh, write_mesh
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.runs.table import COLUMNS, read_rows
+from tests.helpers.processes import PATIENCE, started
 
 Shell = subprocess.CompletedProcess[str]
 
@@ -234,20 +235,16 @@ def test_one_bad_run_of_many_costs_the_others_nothing(spec: Path, tmp_path: Path
 
 
 def test_interrupted_sweep_ends_with_130_and_keeps_its_rows(spec: Path) -> None:
-    edit(spec, "[500, 900]", "[{start = 1, stop = 3000, step = 0.5}]")
-    process = subprocess.Popen(
-        command("sweep", "--no-pictures", "--quiet", spec),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    edit(spec, "[500, 900]", "[{start = 1, stop = 3000, step = 0.1}]")
     table = spec.with_suffix("") / "sweep.csv"
-    deadline = time.monotonic() + 60
-    while not (table.exists() and table.read_bytes().count(b"\n") > 3):
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    with started(command("sweep", "--no-pictures", "--quiet", spec)) as process:
+        deadline = time.monotonic() + PATIENCE
+        while not (table.exists() and table.read_bytes().count(b"\n") > 3):
+            assert process.poll() is None
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert len(said.strip().splitlines()) == 1
     rows = read_rows(table)

@@ -145,7 +145,6 @@ def command(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
         [sys.executable, "-m", "eulerplateau", "branches", str(RUN), *sets, *arguments],
         capture_output=True,
         text=True,
-        timeout=120,
         check=False,
     )
 

@@ -26,8 +26,8 @@ def gallery(folders: tuple[Path, ...], out: Path, quiet: bool) -> None:
     The page holds the diagram, every shape in 3D and the numbers of its row. It needs no
     server and no network: open it in a browser, on a computer or a phone.
     """
+    from eulerplateau.mesh import write_whole
     from eulerplateau.pictures.gallery import collect, page
-    from eulerplateau.runs import write_whole
 
     shown = collect(folders)
     content = page(shown)

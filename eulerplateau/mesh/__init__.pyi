@@ -10,4 +10,6 @@ from .triangles import (
     smallest_angle as smallest_angle,
     unit as unit,
 )
+from .vtp import VtpFile as VtpFile, read_vtp as read_vtp, write_vtp as write_vtp
 from .waist import waist_path as waist_path
+from .whole_files import write_whole as write_whole

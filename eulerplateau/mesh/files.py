@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +12,11 @@ from eulerplateau.mesh import formats
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.generation import generate
 from eulerplateau.mesh.spec import MeshSpec
+from eulerplateau.mesh.whole_files import whole_file
 from eulerplateau.settings import load_toml
 
 _FORMATS = {
-    ".vtp": (formats.read_vtp, formats.write_vtp),
+    ".vtp": (formats.read_polygons, formats.write_polygons),
     ".msh": (formats.read_meshio, formats.write_meshio),
     ".vtu": (formats.read_meshio, formats.write_meshio),
     ".vtk": (formats.read_meshio, formats.write_meshio),
@@ -96,18 +96,11 @@ def write_mesh(mesh: DiskMesh, path: str | Path) -> None:
     """
     path = Path(path)
     _, write = _format(path)
-    temporary = path.with_name(f".{os.getpid()}.{path.name}")
-    try:
-        try:
-            write(temporary, mesh.x * mesh.length, mesh.triangles)
-            # VTK leaves an empty file on a full disk, without an error.
-            if not temporary.is_file() or temporary.stat().st_size == 0:
-                raise OutputError(path, "cannot be written: is the disk full?")
-            os.replace(temporary, path)
-        finally:
-            temporary.unlink(missing_ok=True)
-    except OSError as error:
-        raise OutputError(path, f"cannot be written: {error.strerror}") from None
+    with whole_file(path) as temporary:
+        write(temporary, mesh.x * mesh.length, mesh.triangles)
+        # A library may leave an empty file on a full disk, without an error.
+        if not temporary.is_file() or temporary.stat().st_size == 0:
+            raise OutputError(path, "cannot be written: is the disk full?")
 
 
 def _format(path: Path) -> tuple[formats.Reader, formats.Writer]:

@@ -7,8 +7,8 @@ file; `files` turns that into the project's errors.
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -17,71 +17,21 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
+from eulerplateau.mesh.vtp import read_vtp, vtp_content
 
 Reader = Callable[[Path], tuple[NDArray[Any], NDArray[Any]]]
 Writer = Callable[[Path, FloatArray, IntArray], None]
 
 
-def read_vtp(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Read VTK's XML polygons; of a broken file VTK makes an empty surface."""
-    from vtkmodules.util import numpy_support
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-
-    reader: Any = vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
-    with _silent_vtk():
-        reader.Update()
-    surface = reader.GetOutput()
-    if reader.GetErrorCode() or surface.GetNumberOfPoints() == 0:
-        raise ValueError("VTK cannot read it")
-    if surface.GetNumberOfStrips():
-        raise _not_triangles(path, "triangle strips")
-    to_numpy: Any = numpy_support.vtk_to_numpy
-    polygons = surface.GetPolys()
-    sizes = np.diff(to_numpy(polygons.GetOffsetsArray()))
-    if (sizes != 3).any():
-        raise _not_triangles(path, f"a polygon of {int(sizes[sizes != 3][0])} corners")
-    triangles = to_numpy(polygons.GetConnectivityArray()).reshape(len(sizes), 3)
-    return to_numpy(surface.GetPoints().GetData()).copy(), triangles.copy()
+def read_polygons(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Read VTK's XML polygons."""
+    found = read_vtp(path)
+    return found.points, found.triangles
 
 
-def write_vtp(path: Path, points: FloatArray, triangles: IntArray) -> None:
+def write_polygons(path: Path, points: FloatArray, triangles: IntArray) -> None:
     """Write VTK's XML polygons, compressed."""
-    from vtkmodules.util import numpy_support
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-    to_vtk: Any = numpy_support.numpy_to_vtk
-    to_vtk_ids: Any = numpy_support.numpy_to_vtkIdTypeArray
-    positions = vtkPoints()
-    positions.SetData(to_vtk(points, deep=True))
-    cells = vtkCellArray()
-    offsets = np.arange(0, triangles.size + 1, 3, dtype=np.int64)
-    cells.SetData(to_vtk_ids(offsets, deep=True), to_vtk_ids(triangles.ravel(), deep=True))
-    surface = vtkPolyData()
-    surface.SetPoints(positions)
-    surface.SetPolys(cells)
-    writer: Any = vtkXMLPolyDataWriter()
-    writer.SetInputData(surface)
-    writer.SetFileName(str(path))
-    writer.SetDataModeToBinary()
-    with _silent_vtk():
-        written = writer.Write()
-    if not written:
-        raise OSError(0, "VTK cannot write there")
-
-
-@contextmanager
-def _silent_vtk() -> Iterator[None]:
-    from vtkmodules.vtkCommonCore import vtkObject
-
-    before = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.SetGlobalWarningDisplay(0)
-    try:
-        yield
-    finally:
-        vtkObject.SetGlobalWarningDisplay(before)
+    path.write_bytes(vtp_content(points, triangles))
 
 
 def read_meshio(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from eulerplateau.runs import write_whole
+from eulerplateau.mesh import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,5 +1,4 @@
 from .exploration import Exploration as Exploration, run_branches as run_branches
-from .files import write_whole as write_whole
 from .folder import shape_name as shape_name
 from .reading import read_table as read_table, read_tables as read_tables
 from .series import (

@@ -13,7 +13,7 @@ from typing import Any
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import FilmPoint, SpecialPoint, explore, first_equilibrium
 from eulerplateau.errors import SpecError
-from eulerplateau.runs.files import write_whole
+from eulerplateau.mesh import write_whole
 from eulerplateau.runs.recording import make_mesh, recording
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.sweep import start_shape

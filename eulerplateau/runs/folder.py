@@ -14,8 +14,7 @@ from types import TracebackType
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh import DiskMesh
-from eulerplateau.runs.files import write_whole
+from eulerplateau.mesh import DiskMesh, write_whole
 from eulerplateau.runs.shape_files import write_series, write_shape
 from eulerplateau.runs.table import Row, RowWriter
 

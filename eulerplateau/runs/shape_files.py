@@ -17,10 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.errors import OutputError
+from eulerplateau.errors import MeshError, OutputError
 from eulerplateau.film import Load
-from eulerplateau.mesh import DiskMesh, angle_defects, loop_frame
-from eulerplateau.runs.files import write_whole
+from eulerplateau.mesh import (
+    DiskMesh,
+    angle_defects,
+    loop_frame,
+    read_vtp,
+    write_vtp,
+    write_whole,
+)
 from eulerplateau.runs.table import Row
 
 _LOOP_FIELDS = ("kappa", "kappa_n", "kappa_g", "contact_angle", "tangent", "normal")
@@ -61,58 +67,38 @@ def write_shape(
     (n_v, 3) each, under their names. Field data, of its `row`: step, kL3_alpha, sigma_hat,
     energy. Raises OutputError if the file cannot be written.
     """
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-    film = vtkPolyData()
-    film.SetPoints(_points(x))
-    closed = np.append(mesh.loop, mesh.loop[0])
-    film.SetLines(_cells(closed[None, :]))
-    film.SetPolys(_cells(mesh.triangles))
-    for name, values in (_point_fields(mesh, x) | dict(modes or {})).items():
-        film.GetPointData().AddArray(_array(name, values))
-    for name in ("step", "kL3_alpha", "sigma_hat", "energy"):
-        film.GetFieldData().AddArray(_array(name, np.array([getattr(row, name)])))
-
-    # Through a string, since VTK's own files end up empty on a full disk, in silence.
-    writer = vtkXMLPolyDataWriter()
-    writer.SetInputData(film)
-    writer.WriteToOutputStringOn()
-    writer.SetDataModeToBinary()
-    writer.Write()
-    write_whole(path, writer.GetOutputString().encode("ascii"))
+    about = ("step", "kL3_alpha", "sigma_hat", "energy")
+    write_vtp(
+        path,
+        x,
+        mesh.triangles,
+        loop=mesh.loop,
+        point_fields=_point_fields(mesh, x) | dict(modes or {}),
+        field_data={name: np.array([getattr(row, name)]) for name in about},
+    )
 
 
 def read_shape(path: Path) -> Shape:
     """Read what `write_shape` wrote; raises OutputError if the file is anything else."""
-    from vtkmodules.util import numpy_support
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-
     try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise OutputError(path, f"cannot be read: {error.strerror}") from None
-    to_numpy: Any = numpy_support.vtk_to_numpy
-    reader: Any = vtkXMLPolyDataReader()
-    # Silent: what the reader complains of shows in what it returns, checked below.
-    reader.AddObserver("ErrorEvent", lambda *_: None)
-    reader.ReadFromInputStringOn()
-    reader.SetInputString(content.decode("ascii", "replace"))
-    reader.Update()
-    film = reader.GetOutput()
-    about = film.GetFieldData()
-    if film.GetNumberOfLines() != 1 or not about.HasArray("kL3_alpha"):
-        raise OutputError(path, "is not a whole shape file of a run")
-    closed = to_numpy(film.GetLines().GetConnectivityArray())
-    triangles = to_numpy(film.GetPolys().GetConnectivityArray())
+        found = read_vtp(path)
+    except MeshError:
+        raise _not_a_shape(path) from None
+    about = found.field_data
+    if len(found.lines) != 1 or not {"step", "kL3_alpha", "energy"} <= about.keys():
+        raise _not_a_shape(path)
     return Shape(
-        x=to_numpy(film.GetPoints().GetData()).copy(),
-        triangles=triangles.reshape(-1, 3).astype(np.int64),
-        loop=closed[:-1].astype(np.int64),
-        step=int(about.GetArray("step").GetValue(0)),
-        kL3_alpha=float(about.GetArray("kL3_alpha").GetValue(0)),
-        energy=float(about.GetArray("energy").GetValue(0)),
+        x=found.points,
+        triangles=found.triangles,
+        loop=found.lines[0][:-1],
+        step=int(about["step"][0]),
+        kL3_alpha=float(about["kL3_alpha"][0]),
+        energy=float(about["energy"][0]),
     )
+
+
+def _not_a_shape(path: Path) -> OutputError:
+    return OutputError(path, "is not a whole shape file of a run")
 
 
 def write_series(path: Path, shapes: Sequence[tuple[int, float, str]], load: Load) -> None:
@@ -157,34 +143,3 @@ def _point_fields(mesh: DiskMesh, x: FloatArray) -> dict[str, NDArray[Any]]:
     fields["on_loop"] = np.zeros(mesh.n_v, dtype=np.uint8)
     fields["on_loop"][mesh.loop] = 1
     return fields
-
-
-def _array(name: str, values: NDArray[Any]) -> Any:
-    from vtkmodules.util import numpy_support
-
-    convert: Any = numpy_support.numpy_to_vtk
-    array = convert(np.ascontiguousarray(values), deep=True)
-    array.SetName(name)
-    return array
-
-
-def _points(x: FloatArray) -> Any:
-    from vtkmodules.vtkCommonCore import vtkPoints
-
-    points = vtkPoints()
-    points.SetData(_array("Points", x))
-    return points
-
-
-def _cells(vertices: IntArray) -> Any:
-    """Return cells of equal size, one row of vertex numbers each."""
-    from vtkmodules.util import numpy_support
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
-
-    convert: Any = numpy_support.numpy_to_vtkIdTypeArray
-    count, size = vertices.shape
-    offsets = convert(np.arange(count + 1) * size, deep=True)
-    flat = np.ascontiguousarray(vertices.ravel(), dtype=np.int64)
-    cells = vtkCellArray()
-    cells.SetData(offsets, convert(flat, deep=True))
-    return cells

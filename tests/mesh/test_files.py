@@ -261,7 +261,7 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch, 
 
 def test_reading_a_stored_mesh_loads_no_mesher_and_no_graphics():
     code = (
-        "import sys; from eulerplateau.meshing import load_mesh;"
+        "import sys; from eulerplateau.mesh import load_mesh;"
         f"load_mesh({str(MESHES / 'elongated.vtp')!r});"
         "sys.exit(bool({'gmsh', 'meshio', 'trimesh', 'pyvista', 'matplotlib'}"
         " & set(sys.modules)))"

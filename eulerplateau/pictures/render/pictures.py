@@ -8,6 +8,7 @@ from pathlib import Path
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
+from eulerplateau.mesh import write_whole
 from eulerplateau.pictures.gallery import Run, collect
 from eulerplateau.pictures.render.alignment import aligned
 from eulerplateau.pictures.render.choice import chosen_steps
@@ -23,7 +24,7 @@ from eulerplateau.pictures.render.fields import read_field
 from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
 from eulerplateau.pictures.render.view import View, common_view, turning_views
-from eulerplateau.runs import Shape, shape_name, write_whole
+from eulerplateau.runs import Shape, shape_name
 
 _WIDTH, _FRAME_WIDTH = 1200, 640
 _TURN_FRAMES = 48

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from eulerplateau.errors import OutputError
@@ -14,10 +16,20 @@ def write_whole(path: Path, content: bytes) -> None:
     Raises OutputError, with the old file untouched and the temporary one removed, if the
     folder is missing, full or not writable.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    with whole_file(path) as temporary:
+        temporary.write_bytes(content)
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield a temporary name beside `path`, to write to; it then takes the place of `path`.
+
+    It has the extension of `path`. Raises and leaves behind what `write_whole` does.
+    """
+    temporary = path.with_name(f".{os.getpid()}.{path.name}")
     try:
         try:
-            temporary.write_bytes(content)
+            yield temporary
             os.replace(temporary, path)
         except BaseException:
             temporary.unlink(missing_ok=True)

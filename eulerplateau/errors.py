@@ -64,4 +64,8 @@ class OutputError(EulerPlateauError):
         return "{}: {}".format(*self.args)
 
 
+class MissingLibraryError(EulerPlateauError):
+    """A library is missing; the message says which package brings it."""
+
+
 NOT_CONVERGED_EXIT_CODE = 4

@@ -33,8 +33,8 @@ def gallery(folders: tuple[Path, ...], out: Path, quiet: bool) -> None:
     content = page(shown)
     write_whole(out, content)
     if not quiet:
-        shapes = sum(len(run.rows) for run in shown.runs)
+        shapes = sum(len(exhibit.x) for exhibit in shown.exhibits)
         click.echo(
-            f"{out}: {shapes} shapes of {len(shown.runs)} run(s), "
+            f"{out}: {shapes} shapes of {len(shown.exhibits)} run(s), "
             f"{len(content) / 1e6:.1f} MB"
         )

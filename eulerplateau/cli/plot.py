@@ -33,15 +33,17 @@ def plot(folders: tuple[Path, ...], out: Path, what: str, quiet: bool) -> None:
     needs a dozen loads within 2 % above, as runs/onset.toml has them.
     """
     from eulerplateau.errors import OutputError
-    from eulerplateau.pictures import draw_plot, fit_onset, read_runs
+    from eulerplateau.pictures import draw_comparison, fit_onset
+    from eulerplateau.runs import read_runs
 
     if out.suffix.lower() not in _FORMATS:
         raise click.BadParameter(f"{out}: should end in {', '.join(_FORMATS)}")
-    # Here, so that what is wrong with a folder is an error of this process.
-    for run in read_runs(folders):
-        if what == "onset":
+    runs = read_runs(folders)
+    if what == "onset":
+        # First, so that what is wrong with a folder is an error that names it.
+        for run in runs:
             fit_onset(run)
-    if not draw_plot(folders, what, out):
+    if not draw_comparison(runs, what, out):
         raise OutputError(out, "the figure could not be drawn there")
     if not quiet:
         click.echo(str(out))

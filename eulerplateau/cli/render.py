@@ -52,7 +52,6 @@ def render(
     have one view and one scale, so that shapes can be compared; several make a contact
     sheet too.
     """
-    from eulerplateau.pictures.gallery import collect
     from eulerplateau.pictures.render import (
         SIDES,
         SOAP,
@@ -62,9 +61,9 @@ def render(
         draw_shapes,
         read_field,
     )
-    from eulerplateau.runs import shape_name
+    from eulerplateau.runs import read_run, shape_name
 
-    run = collect([folder]).runs[0]
+    run = read_run(folder)
     if everything or (animate == SWEEP and not steps and not loads):
         chosen = [row.step for row in run.rows]
     else:

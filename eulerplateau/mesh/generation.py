@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.errors import EulerPlateauError, MeshError, SpecError
+from eulerplateau.errors import MeshError, MissingLibraryError, SpecError
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.polygon import area, perimeter, subdivide, to_unit_scale
 from eulerplateau.mesh.spec import MeshSpec
@@ -36,10 +36,6 @@ _OPTIONS = {
     "Mesh.MeshSizeFromPoints": 0,
     "Mesh.MeshSizeFromCurvature": 0,
 }
-
-
-class MissingLibraryError(EulerPlateauError):
-    """A system library is missing; the message says which package brings it."""
 
 
 def generate(spec: MeshSpec) -> DiskMesh:

@@ -1,4 +1,4 @@
-"""pictures."""
+"""Pictures: what a run looks like, as diagrams, prints, renders, and a page to browse."""
 
 import lazy_loader
 

@@ -1,50 +1,80 @@
-"""The figures of `eulerplateau plot`."""
+"""Figures of one run, or of several compared: the command `eulerplateau plot`."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.pictures.child import draw_in_child
-from eulerplateau.pictures.curves import Run
-from eulerplateau.pictures.figure import save
+from eulerplateau.pictures.alignment import aligned
+from eulerplateau.pictures.figure import (
+    ABS_KAPPA_N,
+    MINUS_K,
+    drawn,
+    enlarged,
+    new_figure,
+    save,
+)
 from eulerplateau.pictures.onset import onset_figure
 from eulerplateau.pictures.panels import (
-    QUANTITIES,
-    common_window,
+    DASHES,
+    Curve,
+    Look,
+    Panel,
     draw_panels,
-    legend,
+    legend_above,
+    panel,
     style,
 )
-from eulerplateau.pictures.render.alignment import aligned
-from eulerplateau.pictures.render.view import common_view
 from eulerplateau.pictures.vector_film import draw_film, room
-from eulerplateau.runs import Row, Shape, is_planar, read_shape, shape_name
+from eulerplateau.pictures.view import common_view
+from eulerplateau.runs import Row, Run, Shape, is_planar, read_shape
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, FigureBase
+    from numpy.typing import NDArray
 
-WHAT = (*QUANTITIES, "onset")
 
-_SECONDS = 300.0
+def _over_disk(row: Row) -> float:
+    return row.energy / (row.sigma_hat / (4 * pi) + 4 * pi**2)
+
+
+_PANELS: dict[str, tuple[Panel, ...]] = {
+    "diagram": (panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),),
+    "energy": (
+        panel(r"$E\,L/\alpha$", lambda row: row.energy),
+        panel(r"$E\,/\,(\hat\sigma/4\pi+4\pi^2)$, flat disk: 1", _over_disk),
+    ),
+    "curvature": (panel(MINUS_K, lambda row: -row.total_gauss_curvature),),
+    "eigenvalue": (
+        panel(
+            r"smallest eigenvalue $\lambda_1 L^3/\alpha$",
+            lambda row: row.lowest_eigenvalue,
+            logarithmic=True,
+        ),
+    ),
+}
+WHAT = (*_PANELS, "onset")
+
+# Markers are this part of a panel's diagonal apart, and those of the next run shifted.
+_APART, _SHIFT = 0.09, 0.035
 _PER_LINE = 6
 # A curve steeper than this, in shares of its panel, has its numbers beside it.
 _STEEP = 1.5
 # Inches.
 _COLUMN, _EXTRA, _PANEL, _TITLE = 3.4, 0.6, 3.0, 0.25
-# What a file says of when it was drawn, left out: one run, one file.
 
 
-def draw_plot(folders: Sequence[Path], what: str, path: Path) -> bool:
-    """Draw one of WHAT to `path` in a child process; return whether it was drawn."""
-    names = [str(folder) for folder in folders]
-    return draw_in_child("eulerplateau.pictures", what, str(path), *names, timeout=_SECONDS)
+def draw_comparison(runs: Sequence[Run], what: str, path: Path) -> bool:
+    """Draw one of WHAT to `path`; return whether it was drawn, and log why not."""
+    return drawn(str(path), lambda: plot_runs(runs, what, path))
 
 
 def plot_runs(runs: Sequence[Run], what: str, path: Path) -> None:
@@ -65,23 +95,77 @@ def runs_figure(
     """
     if what == "onset":
         return onset_figure(runs)
-    from matplotlib.figure import Figure
-
-    columns = 1 if common_window(runs) is None else 2
+    window = common_window(runs)
+    columns = 1 if window is None else 2
     shown = [_shown(run, steps) for run in runs] if what == "diagram" else []
     width = _COLUMN * (2 if any(shown) else max(columns, 1.5)) + _EXTRA
-    heights = [_PANEL * len(QUANTITIES[what]) + 0.4]
+    heights = [_PANEL * len(_PANELS[what]) + 0.4]
     if any(shown):
-        gallery = _gallery(runs, shown)
-        heights.insert(0, gallery.height(width))
-    figure = Figure(figsize=(width, sum(heights)), layout="constrained")
+        films = _films(runs, shown)
+        heights.insert(0, films.height(width))
+    figure = new_figure(width, sum(heights))
     parts = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
-    axes = draw_panels(parts[-1], runs, what)
+    axes = draw_panels(
+        parts[-1],
+        _PANELS[what],
+        [curve for number, run in enumerate(runs) for curve in _curves(run, number)],
+        runs[0].load.label,
+        window=window,
+        margin=0.12,
+    )
     if any(shown):
-        _draw_films(parts[0], gallery)
-        _number(axes, runs, shown)
-    legend(parts[-1], runs)
+        _draw_films(parts[0], films)
+        _number(axes[0], runs, shown)
+    legend_above(parts[-1], _handles(runs))
     return figure
+
+
+def common_window(runs: Sequence[Run]) -> tuple[float, float] | None:
+    """Return the loads to enlarge: those of all saddles that end, if they are few."""
+    ends = [run.saddle for run in runs if run.saddle is not None]
+    if not ends:
+        return None
+    loads = [row.load for run in runs for row in run.rows]
+    return enlarged(min(low for low, _ in ends), max(high for _, high in ends), loads)
+
+
+def _curves(run: Run, number: int) -> list[Curve]:
+    """Return the curves of a run in the colour and with the marker of its number."""
+    looks = {**style(number), "markevery": ((_SHIFT * number) % _APART, _APART)}
+    look = Look(
+        solid={**looks, "linestyle": "-", "linewidth": 1.2, "zorder": 3},
+        dashed={**looks, "linestyle": DASHES, "linewidth": 0.9, "zorder": 2},
+        bad={"linestyle": "none", "marker": "x", "color": looks["color"], "markersize": 5},
+        label=run.label,
+    )
+    return [(series, look) for series in run.series]
+
+
+def _handles(runs: Sequence[Run]) -> list[Artist]:
+    """Return what names the runs, and the styles that occur."""
+    from matplotlib.lines import Line2D
+
+    handles: list[Artist] = [
+        Line2D([], [], **style(number), linewidth=1.0, label=run.label)
+        for number, run in enumerate(runs)
+    ]
+    if any(run.branches for run in runs):
+        handles.append(Line2D([], [], color="0.3", linestyle=DASHES, label="unstable"))
+    if any(_falls(run) for run in runs):
+        handles.append(Line2D([], [], color="0.3", linestyle=DASHES, label="load falling"))
+    if any(not row.converged for run in runs for row in run.rows):
+        handles.append(
+            Line2D([], [], marker="x", linestyle="none", color="0.3", label="not converged")
+        )
+    return handles
+
+
+def _falls(run: Run) -> bool:
+    """Whether it is a sweep, a part of which is drawn as one whose load falls."""
+    if run.branches:
+        return False
+    legs = [leg.pieces(leg.values(lambda row: row.energy)) for leg in run.series]
+    return any(not piece.solid for pieces in legs for piece in pieces)
 
 
 def _shown(run: Run, steps: Sequence[int] | None) -> list[Row]:
@@ -91,7 +175,7 @@ def _shown(run: Run, steps: Sequence[int] | None) -> list[Row]:
 
 
 @dataclass(frozen=True)
-class _Gallery:
+class _Films:
     """Shapes in lines, each with the number of its run, and how they are seen."""
 
     lines: list[tuple[int, Sequence[tuple[Row, Shape]]]]
@@ -108,9 +192,9 @@ class _Gallery:
         return len(self.lines) * (film + _TITLE)
 
 
-def _gallery(runs: Sequence[Run], shown: Sequence[Sequence[Row]]) -> _Gallery:
+def _films(runs: Sequence[Run], shown: Sequence[Sequence[Row]]) -> _Films:
     films = [
-        aligned([read_shape(run.folder / shape_name(row.step)) for row in rows])
+        aligned([read_shape(run.shape_path(row)) for row in rows])
         for run, rows in zip(runs, shown, strict=True)
     ]
     every = [shape for shapes in films for shape in shapes]
@@ -120,7 +204,7 @@ def _gallery(runs: Sequence[Run], shown: Sequence[Sequence[Row]]) -> _Gallery:
         for number, (rows, shapes) in enumerate(zip(shown, films, strict=True))
         for line in _lines(list(zip(rows, shapes, strict=True)))
     ]
-    return _Gallery(lines, eye, room(every, eye))
+    return _Films(lines, eye, room(every, eye))
 
 
 def _lines(
@@ -132,21 +216,21 @@ def _lines(
     return [shapes[first : first + length] for first in range(0, len(shapes), length)]
 
 
-def _draw_films(figure: FigureBase, gallery: _Gallery) -> None:
-    axes = figure.subplots(len(gallery.lines), gallery.columns, squeeze=False)
+def _draw_films(figure: FigureBase, films: _Films) -> None:
+    axes = figure.subplots(len(films.lines), films.columns, squeeze=False)
     count = 0
-    for (number, line), cells in zip(gallery.lines, axes, strict=True):
+    for (number, line), cells in zip(films.lines, axes, strict=True):
         for ax in cells:
             ax.set_axis_off()
         for ax, (row, shape) in zip(cells, line, strict=False):
             count += 1
-            draw_film(ax, shape, gallery.eye, gallery.half)
+            draw_film(ax, shape, films.eye, films.half)
             title = rf"$\bf{{{count}}}$   ${row.load_name.tex}={row.load:.5g}$"
             ax.set_title(title, fontsize=7.5, color=style(number)["color"], pad=3)
 
 
 def _number(
-    axes: Sequence[Sequence[Axes]], runs: Sequence[Run], shown: Sequence[Sequence[Row]]
+    panels: NDArray[Any], runs: Sequence[Run], shown: Sequence[Sequence[Row]]
 ) -> None:
     """Mark the shapes in the diagram, in the enlargement where it shows them."""
     from matplotlib.patheffects import withStroke
@@ -157,7 +241,7 @@ def _number(
         for row in rows:
             count += 1
             inside = window is not None and window[0] <= row.load <= window[1]
-            ax = axes[1 if inside else 0][0]
+            ax = panels[1 if inside else 0]
             place = (row.load, row.abs_kappa_n)
             colour = style(number)["color"]
             ax.plot(*place, "o", color=colour, markersize=7, fillstyle="none", zorder=5)

@@ -1,18 +1,24 @@
-"""What the diagrams have in common: labels, colours, the enlargement, saving."""
+"""What all figures have in common: labels, colours, the enlargement, saving, failing."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+import logging
+import os
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from eulerplateau.errors import EulerPlateauError
 from eulerplateau.mesh import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_log = logging.getLogger(__name__)
+
+MINUS_K = r"$-\langle K\rangle=-\int K\,dA$"
 ABS_KAPPA_N = r"$\langle|\kappa_n|\rangle=\oint|\kappa_n|\,ds$"
 
 # Okabe and Ito's colours: told apart by the colour-blind and, by lightness, in grey.
@@ -30,11 +36,35 @@ _WIDTH, _EXTRA, _HEIGHT = 3.4, 0.6, 7.2
 _NARROW = 0.2
 
 
-def new_figure(columns: int) -> Figure:
-    """Return an empty figure for panels above each other in so many columns."""
+def load_matplotlib() -> None:
+    """Import matplotlib; to be called before anything of it is imported.
+
+    Figures here are drawn without a window, so that the backend MPLBACKEND names does not
+    matter. But matplotlib refuses to be imported if there is no such backend, and Jupyter
+    exports one that other environments do not have.
+    """
+    try:
+        import matplotlib  # noqa: F401
+    except ValueError:
+        named = os.environ.pop("MPLBACKEND", None)
+        try:
+            import matplotlib  # noqa: F401
+        finally:
+            if named is not None:
+                os.environ["MPLBACKEND"] = named
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """Return an empty figure of so many inches that leaves its parts the room they need."""
+    load_matplotlib()
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(_WIDTH * columns + _EXTRA, _HEIGHT), layout="constrained")
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def figure_of_panels(columns: int) -> Figure:
+    """Return an empty figure for panels above each other in so many columns."""
+    return new_figure(_WIDTH * columns + _EXTRA, _HEIGHT)
 
 
 def frame(ax: Axes) -> None:
@@ -67,3 +97,19 @@ def save(figure: Figure, path: Path) -> None:
     with rc_context(settings):
         figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
     write_whole(path, content.getvalue())
+
+
+def drawn(name: str, draw: Callable[[], None]) -> bool:
+    """Call `draw`, which draws the picture `name`; return whether it ended well.
+
+    An exception is logged as a warning of one line: it costs the picture, not the run.
+    """
+    try:
+        draw()
+    except Exception as error:
+        kind = "" if isinstance(error, EulerPlateauError) else f"{type(error).__name__}: "
+        _log.warning(
+            "%s could not be drawn: %s%s", name, kind, " ".join(str(error).split())
+        )
+        return False
+    return True

@@ -11,9 +11,9 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import PowerLaw, fit_power
 from eulerplateau.errors import OutputError
-from eulerplateau.pictures.curves import Quantity, Run
-from eulerplateau.pictures.figure import ABS_KAPPA_N, frame
-from eulerplateau.pictures.panels import MINUS_K, legend_above, style
+from eulerplateau.pictures.figure import ABS_KAPPA_N, MINUS_K, frame, new_figure
+from eulerplateau.pictures.panels import legend_above, style
+from eulerplateau.runs import Quantity, Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,10 +72,8 @@ def fit_onset(run: Run) -> tuple[Onset, Onset]:
 
 def onset_figure(runs: Sequence[Run]) -> Figure:
     """Return the figure: each quantity over the load's distance, linear and log-log."""
-    from matplotlib.figure import Figure
-
     fits = [fit_onset(run) for run in runs]
-    figure = Figure(figsize=(7.4, 6.2 + 0.2 * len(runs)), layout="constrained")
+    figure = new_figure(7.4, 6.2 + 0.2 * len(runs))
     axes = figure.subplots(2, 2)
     for (label, quantity), column, onsets in zip(
         _PANELS, axes.T, zip(*fits, strict=True), strict=True
@@ -100,7 +98,7 @@ def _draw_linear(ax: Axes, run: Run, quantity: Quantity, onset: Onset, number: i
     planar = [pair for pair in rows if -_BELOW * distance[-1] < pair[0] < 0]
     points = np.array([*planar, *zip(distance, onset.values, strict=True)], dtype=float)
     place = _measured(law.onset, law.onset_error)
-    name = run.rows[0].load_name.tex
+    name = run.load.tex
     label = rf"{run.label}, fitted onset: ${name}=${place}"
     looks = style(number)
     ax.plot(100 * points[:, 0], points[:, 1], **looks, linestyle="none", label=label)

@@ -1,16 +1,18 @@
-"""Quantities over the load, of several runs, each in its own colour and marker."""
+"""Quantities over the load, of any number of runs, legs or branches, panel above panel.
+
+Every diagram of a run is a list of panels and a list of curves handed to `draw_panels`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from math import pi
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eulerplateau.pictures.curves import Quantity, Run, pieces
+from eulerplateau.arrays import FloatArray
 from eulerplateau.pictures.figure import (
-    ABS_KAPPA_N,
     BLACK,
     BLUE,
     GREEN,
@@ -18,42 +20,75 @@ from eulerplateau.pictures.figure import (
     PURPLE,
     SKY,
     VERMILION,
-    enlarged,
     frame,
 )
-from eulerplateau.runs import Row
+from eulerplateau.runs import Quantity, Series
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
+    from matplotlib.lines import Line2D
+    from numpy.typing import NDArray
 
-MINUS_K = r"$-\langle K\rangle=-\int K\,dA$"
+Band = tuple[float, float]
 
+DASHES = (0, (4, 2))
 _COLOURS = (BLUE, VERMILION, BLACK, GREEN, PURPLE, ORANGE, SKY)
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-# Markers are this part of a panel's diagonal apart, and those of the next run shifted.
-_APART, _SHIFT = 0.09, 0.035
-_DASHES = (0, (4, 2))
 # Letters of a legend per inch, and what the line or marker before a label takes.
 _LETTERS, _KEY = 13.0, 9
+# Part of a panel's whole range below which the solid curves' own is rounding.
+_FLAT = 1e-3
 
 
-def _over_disk(row: Row) -> float:
-    return row.energy / (row.sigma_hat / (4 * pi) + 4 * pi**2)
+@dataclass(frozen=True)
+class Panel:
+    """What is drawn over the load.
+
+    Attributes
+    ----------
+    label : str, of the axis
+    values : of a series of n rows the curves (n,), one, or one for each side of the film
+    jump : float; a branch has a gap where its curve changes by more from point to point
+    solid_only : bool, whether the range is that of the solid curves and the others may
+        leave it
+    logarithmic : bool, on both sides of zero if there are unstable films
+    ticks, limits : of the axis; chosen from what is drawn if not given
+    """
+
+    label: str
+    values: Callable[[Series], Sequence[FloatArray]]
+    jump: float = np.inf
+    solid_only: bool = False
+    logarithmic: bool = False
+    ticks: Sequence[float] | None = None
+    limits: Band | None = None
 
 
-QUANTITIES: dict[str, tuple[tuple[str, Quantity], ...]] = {
-    "diagram": ((ABS_KAPPA_N, lambda row: row.abs_kappa_n),),
-    "energy": (
-        (r"$E\,L/\alpha$", lambda row: row.energy),
-        (r"$E\,/\,(\hat\sigma/4\pi+4\pi^2)$, flat disk: 1", _over_disk),
-    ),
-    "curvature": ((MINUS_K, lambda row: -row.total_gauss_curvature),),
-    "eigenvalue": (
-        (r"smallest eigenvalue $\lambda_1 L^3/\alpha$", lambda row: row.lowest_eigenvalue),
-    ),
-}
+def panel(label: str, quantity: Quantity, **options: Any) -> Panel:
+    """Return the panel of a quantity that a row has one value of."""
+    return Panel(label, lambda series: [series.values(quantity)], **options)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a curve is drawn, in matplotlib's words.
+
+    Attributes
+    ----------
+    solid, dashed : of its pieces, as they are solid or not
+    bad : of its rows that are not converged
+    label : str or None, in the legend; curves that share it are named once
+    """
+
+    solid: Mapping[str, Any]
+    dashed: Mapping[str, Any]
+    bad: Mapping[str, Any] = field(default_factory=dict)
+    label: str | None = None
+
+
+Curve = tuple[Series, Look]
 
 
 def style(number: int) -> dict[str, Any]:
@@ -68,116 +103,132 @@ def style(number: int) -> dict[str, Any]:
     }
 
 
-def draw_panels(figure: FigureBase, runs: Sequence[Run], what: str) -> list[list[Axes]]:
-    """Draw the quantities of `what`; return the axes of each column.
+def draw_panels(
+    figure: FigureBase,
+    panels: Sequence[Panel],
+    curves: Sequence[Curve],
+    load_label: str,
+    *,
+    window: Band | None = None,
+    bands: Sequence[Band] = (),
+    margin: float = 0.08,
+    one_height: bool = False,
+) -> NDArray[Any]:
+    """Draw the panels above each other; return their axes (n_panels, n_columns).
 
-    A second column enlarges the loads at which a film is out of its plane, if they are few.
+    Parameters
+    ----------
+    figure : to be filled
+    panels, curves : what is drawn; every curve in every panel
+    load_label : str, of the axis they share
+    window : the loads that a second column enlarges
+    bands : the loads shaded because the film is not planar there
+    margin : float, the room above and below the curves, as a part of their range
+    one_height : bool, whether the second column keeps the ranges of the first
     """
-    window = common_window(runs)
     columns = 1 if window is None else 2
-    panels = QUANTITIES[what]
-    axes = figure.subplots(len(panels), columns, sharex="col", squeeze=False)
-    for (label, quantity), line in zip(panels, axes, strict=True):
-        line[0].set_ylabel(label)
+    shared: Any = {"sharex": "col", "sharey": "row" if one_height else False}
+    axes: NDArray[Any] = figure.subplots(len(panels), columns, squeeze=False, **shared)
+    for what, line in zip(panels, axes, strict=True):
+        line[0].set_ylabel(what.label)
         for ax in line:
-            for number, run in enumerate(runs):
-                _draw(ax, run, quantity, number)
+            _shade(ax, bands)
+            _draw(ax, what, curves)
             frame(ax)
-            ax.margins(y=0.12)
-            if what == "eigenvalue":
-                _scale(ax, runs)
+            ax.margins(y=margin)
+            if what.logarithmic:
+                _scale(ax, curves)
     for column in axes.T:
-        column[-1].set_xlabel(runs[0].rows[0].load_name.label)
+        column[-1].set_xlabel(load_label)
     if window is not None:
-        for ax in axes[:, 1]:
-            ax.set_xlim(*window)
-            _fit_height(ax)
-    return [list(column) for column in axes.T]
+        axes[0, 1].set_xlim(*window)
+    for what, line in zip(panels, axes, strict=True):
+        fitted = line[:0] if one_height else line[1:]
+        for ax in line if what.solid_only else fitted:
+            _fit_height(ax, margin, what.solid_only)
+        if what.ticks is not None:
+            line[0].set_yticks(what.ticks)
+        if what.limits is not None:
+            line[0].set_ylim(*what.limits)
+    return axes
 
 
-def common_window(runs: Sequence[Run]) -> tuple[float, float] | None:
-    """Return the loads to enlarge: those of all saddles that end, if they are few."""
-    ends = [run.saddle for run in runs if run.saddle is not None]
-    if not ends:
-        return None
-    loads = [row.load for run in runs for row in run.rows]
-    return enlarged(min(low for low, _ in ends), max(high for _, high in ends), loads)
-
-
-def legend(figure: FigureBase, runs: Sequence[Run]) -> None:
-    """Name the runs, and the styles that occur, above the panels."""
-    from matplotlib.lines import Line2D
-
-    handles: list[Artist] = [
-        Line2D([], [], **style(number), linewidth=1.0, label=run.label)
-        for number, run in enumerate(runs)
-    ]
-    if any(run.branches for run in runs):
-        handles.append(Line2D([], [], color="0.3", linestyle=_DASHES, label="unstable"))
-    sweeps = [run for run in runs if not run.branches]
-    if any(not p.solid for run in sweeps for p in pieces(run, lambda row: row.energy)):
-        handles.append(Line2D([], [], color="0.3", linestyle=_DASHES, label="load falling"))
-    if any(not row.converged for run in runs for row in run.rows):
-        handles.append(
-            Line2D([], [], marker="x", linestyle="none", color="0.3", label="not converged")
-        )
-    legend_above(figure, handles)
-
-
-def legend_above(figure: FigureBase, handles: Sequence[Artist]) -> None:
+def legend_above(
+    figure: FigureBase,
+    handles: Sequence[Artist],
+    columns: int | None = None,
+    size: float = 8.0,
+) -> None:
     """Explain labelled `handles` above the panels, in as many columns as have room."""
-    longest = max(len(str(handle.get_label())) for handle in handles)
+    longest = max((len(str(handle.get_label())) for handle in handles), default=0)
     room = _LETTERS * figure.get_figure(root=True).get_figwidth()
     figure.legend(
         handles=handles,
         loc="outside upper center",
-        ncols=max(1, int(room / (longest + _KEY))),
+        ncols=columns or max(1, int(room / (longest + _KEY))),
         frameon=False,
-        fontsize=8,
+        fontsize=size,
     )
 
 
-def _draw(ax: Axes, run: Run, quantity: Quantity, number: int) -> None:
-    looks = style(number)
-    label: str | None = run.label
-    for piece in pieces(run, quantity):
-        ax.plot(
-            piece.loads,
-            piece.values,
-            **looks,
-            markevery=((_SHIFT * number) % _APART, _APART),
-            linestyle="-" if piece.solid else _DASHES,
-            linewidth=1.2 if piece.solid else 0.9,
-            label=label,
-            zorder=3 if piece.solid else 2,
-        )
-        label = None
-    bad = [row for row in run.rows if not row.converged]
-    if bad:
-        values = [quantity(row) for row in bad]
-        loads = [row.load for row in bad]
-        ax.plot(loads, values, "x", color=looks["color"], markersize=5)  # type: ignore[arg-type]
+def _shade(ax: Axes, bands: Sequence[Band]) -> None:
+    for number, (low, high) in enumerate(bands):
+        label = "not planar" if number == 0 else None
+        ax.axvspan(low, high, color="0.9", linewidth=0, zorder=0, label=label)
 
 
-def _scale(ax: Axes, runs: Sequence[Run]) -> None:
+def _draw(ax: Axes, what: Panel, curves: Sequence[Curve]) -> None:
+    """Draw all curves, and then what did not converge of them."""
+    named: set[str | None] = set()
+
+    def new(label: str | None) -> str | None:
+        known = label in named
+        named.add(label)
+        return None if known else label
+
+    drawn = [(s, values, look) for s, look in curves for values in what.values(s)]
+    for series, values, look in drawn:
+        for piece in series.pieces(values, what.jump):
+            style = look.solid if piece.solid else look.dashed
+            ax.plot(piece.loads, piece.values, **style, label=new(look.label))
+    for series, values, look in drawn:
+        bad = np.array([not row.converged for row in series.rows], dtype=bool)
+        if bad.any():
+            style = dict(look.bad)
+            label = new(style.pop("label", None))
+            ax.plot(series.loads[bad], values[bad], **style, label=label)
+
+
+def _scale(ax: Axes, curves: Sequence[Curve]) -> None:
     """Make the scale logarithmic, on both sides of zero if there are unstable films."""
-    if any(row.n_unstable for run in runs for row in run.rows):
+    if any(row.n_unstable for series, _ in curves for row in series.rows):
         ax.set_yscale("symlog", linthresh=1.0)
         ax.axhline(0, color="0.6", linewidth=0.6, zorder=0)
     else:
         ax.set_yscale("log")
 
 
-def _fit_height(ax: Axes) -> None:
-    """Choose the range of values from those at the loads shown."""
+def _fit_height(ax: Axes, margin: float, solid_only: bool) -> None:
+    """Choose the range from all curves, or from the solid ones, at the loads shown.
+
+    Solid ones that all lie at zero say nothing about a range.
+    """
+    solid = [line for line in ax.lines if line.get_linestyle() == "-"]
+    shown, own = _heights(ax, ax.lines), _heights(ax, solid)
+    if solid_only and len(own) and np.ptp(own) > _FLAT * np.ptp(shown):
+        shown = own
+    if len(shown) and (np.ptp(shown) > 0 or ax.get_yscale() == "linear"):
+        room = margin * np.ptp(shown) or 1.0
+        limits = np.array([shown.min() - room, shown.max() + room])
+        ax.set_ylim(*ax.yaxis.get_transform().inverted().transform(limits))
+
+
+def _heights(ax: Axes, lines: Sequence[Line2D]) -> FloatArray:
+    """Return the finite values of lines at the loads shown, as far up as they appear."""
     low, high = ax.get_xlim()
-    shown = [np.empty(0)]
-    for line in ax.lines:
+    found = [np.empty(0)]
+    for line in lines:
         x, y = np.asarray(line.get_data(), dtype=float)
-        shown.append(y[(low <= x) & (x <= high) & np.isfinite(y)])
-    scale = ax.yaxis.get_transform()
-    heights = scale.transform(np.concatenate(shown))
-    if len(heights) and np.ptp(heights) > 0:
-        margin = 0.12 * np.ptp(heights)
-        limits = np.array([heights.min() - margin, heights.max() + margin])
-        ax.set_ylim(*scale.inverted().transform(limits))
+        found.append(y[(low <= x) & (x <= high) & np.isfinite(y)])
+    heights: FloatArray = ax.yaxis.get_transform().transform(np.concatenate(found))
+    return heights

@@ -1,8 +1,7 @@
-"""Figures of exact planar films; `python -m eulerplateau.planar_plots DIR` draws them."""
+"""Figures of exact planar films: their shapes at several loads, and their energies."""
 
 from __future__ import annotations
 
-import sys
 from math import pi, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,15 +15,21 @@ from eulerplateau.exact.planar import (
     planar_film,
     thresholds,
 )
-from eulerplateau.pictures.child import draw_in_child
-from eulerplateau.pictures.figure import BLACK, BLUE, VERMILION, frame, save
+from eulerplateau.pictures.figure import (
+    BLACK,
+    BLUE,
+    VERMILION,
+    drawn,
+    frame,
+    new_figure,
+    save,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 GALLERY, ENERGY = "planar-gallery.png", "planar-energy.png"
 
-_SECONDS = 120.0
 _LOAD = r"$\hat\sigma=\sigma L^3/\alpha$"
 # Half the length of the longest film, and a margin.
 _HALF_WIDTH = 0.26
@@ -48,8 +53,10 @@ _STYLES: dict[Regime, Any] = {
 
 
 def draw_figures(folder: Path) -> bool:
-    """Draw both figures to `folder` in a child process; return whether that worked."""
-    return draw_in_child("eulerplateau.pictures.planar", str(folder), timeout=_SECONDS)
+    """Draw both figures to `folder`; return whether they were drawn, and log why not."""
+    gallery, energy = folder / GALLERY, folder / ENERGY
+    done = drawn(str(gallery), lambda: plot_gallery(gallery))
+    return drawn(str(energy), lambda: plot_energy(energy)) and done
 
 
 def plot_gallery(path: Path) -> None:
@@ -57,10 +64,8 @@ def plot_gallery(path: Path) -> None:
 
     Raises OutputError if the PNG file `path` cannot be written.
     """
-    from matplotlib.figure import Figure
-
     heights = {2: 0.13, 3: 0.185, 4: 0.185, 5: 0.185}
-    figure = Figure(figsize=(9.6, 6.4), layout="constrained")
+    figure = new_figure(9.6, 6.4)
     axes = figure.subplots(
         len(heights), len(_COLUMNS), height_ratios=list(heights.values())
     )
@@ -79,9 +84,7 @@ def plot_energy(path: Path) -> None:
 
     Raises OutputError if the PNG file `path` cannot be written.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.4, 5.4), layout="constrained")
+    figure = new_figure(7.4, 5.4)
     ax = figure.subplots()
     low, high = 500.0, 1.5e5
     loads = np.geomspace(low, high, 200)
@@ -154,9 +157,3 @@ def _draw_inset(ax: Axes, film: PlanarFilm, colour: str) -> None:
         transform=ax.transData,
     )
     _draw_film(inset, film, (_HALF_WIDTH, _HALF_WIDTH), 0.9)
-
-
-if __name__ == "__main__":
-    _folder = Path(sys.argv[1])
-    plot_gallery(_folder / GALLERY)
-    plot_energy(_folder / ENERGY)

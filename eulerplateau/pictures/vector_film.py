@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.pictures.render.view import UP
+from eulerplateau.pictures.view import UP
 from eulerplateau.runs import Shape
 
 if TYPE_CHECKING:

@@ -1,9 +1,10 @@
-"""Branches as they are drawn: read back from the rows of branches.csv."""
+"""The curves of a diagram: the legs of a sweep, the branches of an exploration."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -12,31 +13,130 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.runs.states import is_planar
-from eulerplateau.runs.table import BranchRow
+from eulerplateau.runs.table import BranchRow, Row
+
+Quantity = Callable[[Row], float | None]
 
 # Points drawn from one point of a branch to the next.
 _BETWEEN = 24
 
 
 @dataclass(frozen=True)
-class Branch:
-    """One branch, from the special point it starts at.
+class Piece:
+    """A part of a curve drawn in one style: loads and values (n,).
+
+    `solid` is a sweep with its load rising, or a stable stretch of a branch.
+    """
+
+    loads: FloatArray
+    values: FloatArray
+    solid: bool
+
+
+@dataclass(frozen=True)
+class Series:
+    """Successive rows of a run that make one curve of its diagram.
 
     Attributes
     ----------
-    number : int
-    origin : int or None, the number of the special point it starts from
-    rows : in sequence; the first is that special point
+    rows : in sequence; the first is where it starts, also if that is another series' row
+    first : int, the number of the first row of its own in the run's table
+    start : int or None, the number of the row it starts at, if that is another series'
     """
 
-    number: int
-    origin: int | None
-    rows: tuple[BranchRow, ...]
+    rows: tuple[Row, ...]
+    first: int = field(default=0, kw_only=True)
+    start: int | None = field(default=None, kw_only=True)
+
+    @property
+    def name(self) -> str:
+        """What tells it from the run's other series."""
+        raise NotImplementedError
+
+    @property
+    def group(self) -> str:
+        """What the series drawn alike have in common."""
+        raise NotImplementedError
+
+    @property
+    def last(self) -> int:
+        """The number of its last row in the run's table."""
+        return self.first + len(self.rows) - 1 - (self.start is not None)
 
     @property
     def loads(self) -> FloatArray:
         """Loads (n,)."""
         return np.array([row.load for row in self.rows])
+
+    def values(self, quantity: Quantity) -> FloatArray:
+        """Return a quantity of its rows (n,); NaN where there is none, or no finite one."""
+        found = [quantity(row) for row in self.rows]
+        return np.array(
+            [math.nan if v is None or not math.isfinite(v) else v for v in found],
+            dtype=float,
+        )
+
+    def pieces(self, values: FloatArray, jump: float = math.inf) -> Iterator[Piece]:
+        """Yield the curve of `values` (n,) piece by piece.
+
+        It has a gap where a value is NaN, or changes by more than `jump` from one point of
+        a branch to the next.
+        """
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class Leg(Series):
+    """A part of a sweep, from where its load turns to where it turns again.
+
+    A turning point ends one leg and starts the next.
+    """
+
+    rising: bool = field(default=True, kw_only=True)
+
+    @property
+    def name(self) -> str:
+        """What tells it from a leg the other way."""
+        return "load rising" if self.rising else "load falling"
+
+    @property
+    def group(self) -> str:
+        """What the series drawn alike have in common."""
+        return self.name
+
+    def pieces(self, values: FloatArray, jump: float = math.inf) -> Iterator[Piece]:
+        """Yield all its converged rows, unless there is nothing to be seen of them."""
+        good = np.array([row.converged for row in self.rows], dtype=bool)
+        if np.isfinite(values[good]).any():
+            yield Piece(self.loads[good], values[good], self.rising)
+
+
+@dataclass(frozen=True)
+class Branch(Series):
+    """One branch, from the special point it starts at.
+
+    Attributes
+    ----------
+    rows : in sequence; the first is that special point
+    number : int
+    origin : int or None, the number of the special point it starts from
+    """
+
+    rows: tuple[BranchRow, ...]
+    number: int = field(default=0, kw_only=True)
+    origin: int | None = field(default=None, kw_only=True)
+
+    @property
+    def name(self) -> str:
+        """What tells it from the other branches."""
+        return f"branch {self.number}"
+
+    @property
+    def group(self) -> str:
+        """What branches drawn alike have in common: mirror images start together."""
+        if self.start is None:
+            return "the first branch"
+        return f"from point {self.origin} at {self.rows[0].load:.6g}"
 
     @property
     def abs_kappa_n(self) -> FloatArray:
@@ -66,13 +166,33 @@ class Branch:
         ends = self.rows[0].special, self.rows[-1].special
         return None not in ends and bool(self.stable.all())
 
+    def stretches(
+        self, apart: NDArray[np.bool_] | None = None
+    ) -> Iterator[tuple[bool, slice]]:
+        """Yield the stretches of like stability, and whether they are stable.
+
+        A point and the next that are `apart` (n - 1,) belong to no stretch together.
+        """
+        gaps = np.zeros_like(self.stable) if apart is None else apart
+        kinds = enumerate(zip(self.stable.tolist(), gaps.tolist(), strict=True))
+        for (stable, gap), alike in groupby(kinds, key=lambda numbered: numbered[1]):
+            places = [place for place, _ in alike]
+            if not gap:
+                yield stable, slice(places[0], places[-1] + 2)
+
+    def pieces(self, values: FloatArray, jump: float = math.inf) -> Iterator[Piece]:
+        """Yield its stretches of like stability, smooth."""
+        within = np.abs(np.diff(values)) <= jump
+        for stable, part in self.stretches(~within):
+            yield Piece(self.smooth(self.loads, part), self.smooth(values, part), stable)
+
     def smooth(self, values: FloatArray, part: slice) -> FloatArray:
         """Return a part of `values` (n,), interpolated in the arclength, not in the load.
 
         Near a pitchfork the amplitude is linear in the arclength and the load quadratic.
         """
         s = np.array([row.arclength for row in self.rows[part]])
-        if self.rows[part][0] is self.rows[0] and self.origin is not None:
+        if self.rows[part][0] is self.rows[0] and self.start is not None:
             s[0] = 0.0
         places = np.arange(_BETWEEN * (len(s) - 1) + 1) / _BETWEEN
         curve = CubicSpline(s, values[part])
@@ -80,16 +200,36 @@ class Branch:
         return fine
 
 
+def read_legs(rows: Sequence[Row]) -> list[Leg]:
+    """Split a sweep where its load turns; rows that are no two are one leg."""
+    rises = (after.load >= row.load for row, after in pairwise(rows))
+    found: list[Leg] = []
+    for rising, alike in groupby(enumerate(rises), key=lambda numbered: numbered[1]):
+        places = [place for place, _ in alike]
+        begin, end = places[0], places[-1] + 2
+        start, first = (begin, begin + 1) if found else (None, 0)
+        found.append(Leg(tuple(rows[begin:end]), first=first, start=start, rising=rising))
+    return found or [Leg(tuple(rows))]
+
+
 def read_branches(rows: Sequence[BranchRow]) -> list[Branch]:
     """Return the branches of a table, each continued back to where it starts from."""
-    special = {row.special: row for row in reversed(rows) if row.special is not None}
+    special: dict[int, int] = {}
+    for place, row in enumerate(rows):
+        if row.special is not None:
+            special.setdefault(row.special, place)
     found = []
-    for number, alike in groupby(rows, key=lambda row: row.branch):
+    for number, alike in groupby(enumerate(rows), key=lambda numbered: numbered[1].branch):
         members = list(alike)
-        origin = members[0].origin
-        if origin is not None:
-            members.insert(0, special[origin])
-        found.append(Branch(number, origin, tuple(members)))
+        first, row = members[0]
+        start = None if row.origin is None else special.get(row.origin)
+        before = () if start is None else (rows[start],)
+        own = (row for _, row in members)
+        found.append(
+            Branch(
+                (*before, *own), first=first, start=start, number=number, origin=row.origin
+            )
+        )
     return found
 
 
@@ -106,14 +246,14 @@ def signed_twists(branch: Branch) -> list[FloatArray]:
     return [np.where(branch.planar, side * np.abs(twist), twist)]
 
 
-def energy_above(first: Branch) -> Callable[[Branch], FloatArray]:
-    """Return the function that gives a branch's energy (n,) above that of `first`.
+def energy_above(first: Series) -> Callable[[Series], FloatArray]:
+    """Return the function that gives a branch's energy (n,) above that of branch `first`.
 
     It compares at equal loads, and is NaN where `first` does not reach, or not in one
     piece. At equilibrium dE/dload is the film's energy over the load, so that cubics
     interpolate the first branch's energy to fourth order in the step.
     """
-    rising: list[BranchRow] = []
+    rising: list[Row] = []
     for row in first.rows:
         if rising and row.load <= rising[-1].load:
             break

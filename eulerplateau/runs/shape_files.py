@@ -53,6 +53,27 @@ class Shape:
     energy: float
 
 
+@dataclass(frozen=True)
+class ShapeSequence:
+    """The shapes of a run, on one set of vertices with one loop.
+
+    Attributes
+    ----------
+    x : (n, n_v, 3) float, lengths in units of L
+    loop : (n_b,) int, cyclic
+    tilings : where triangles change: the shape from which on, and (n_t, 3) int
+        The first is from shape 0 on; only a soap film that was repaired has others.
+    """
+
+    x: FloatArray
+    loop: IntArray
+    tilings: tuple[tuple[int, IntArray], ...]
+
+    def triangles(self, place: int) -> IntArray:
+        """Return the triangles (n_t, 3) of a shape."""
+        return next(tiles for first, tiles in self.tilings[::-1] if first <= place)
+
+
 def write_shape(
     path: Path,
     mesh: DiskMesh,
@@ -95,6 +116,29 @@ def read_shape(path: Path) -> Shape:
         kL3_alpha=float(about["kL3_alpha"][0]),
         energy=float(about["energy"][0]),
     )
+
+
+def read_shapes(paths: Sequence[Path]) -> ShapeSequence:
+    """Read the shapes of a run, at least one.
+
+    Raises OutputError naming the file that cannot be read, has other vertices or another
+    loop than the first, or positions that are not finite.
+    """
+    x: list[FloatArray] = []
+    tilings: list[tuple[int, IntArray]] = []
+    loop: IntArray | None = None
+    for path in paths:
+        shape = read_shape(path)
+        loop = shape.loop if loop is None else loop
+        if not np.array_equal(shape.loop, loop) or (x and len(shape.x) != len(x[0])):
+            raise OutputError(path, f"has another mesh than {paths[0].name}")
+        if not tilings or not np.array_equal(shape.triangles, tilings[-1][1]):
+            tilings.append((len(x), shape.triangles))
+        if not np.isfinite(shape.x).all():
+            raise OutputError(path, "has positions that are not finite")
+        x.append(shape.x)
+    assert loop is not None  # there are paths
+    return ShapeSequence(np.array(x), loop, tuple(tilings))
 
 
 def _not_a_shape(path: Path) -> OutputError:

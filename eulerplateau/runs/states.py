@@ -1,10 +1,10 @@
-"""Tell the distinct states of a sweep apart, for pictures."""
+"""Which states a run shows: planar or not, the distinct ones, one row for each."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import groupby, pairwise
+from itertools import groupby
 
 from eulerplateau.runs.table import Row
 
@@ -15,6 +15,10 @@ _PLANAR_BELOW = 0.05
 _ROUND_ABOVE = 0.95
 # A saddle is shown from this part of its largest normal curvature on.
 _FULL = 0.8
+# Stable states of branches that differ by less than this part of the largest are alike.
+_ALIKE = 0.01
+# A stretch of fewer points is a stub, beside a special point whose eigenvalue has no sign.
+_STUB = 4
 
 
 def is_planar(row: Row) -> bool:
@@ -37,14 +41,40 @@ def distinct_steps(rows: Sequence[Row]) -> list[int]:
     return [_shown(state).step for state in states]
 
 
-def legs(rows: Sequence[Row]) -> list[tuple[bool, list[Row]]]:
-    """Split a sweep where its load turns; a turning point belongs to both legs."""
-    found = []
-    steps = groupby(pairwise(rows), key=lambda pair: pair[1].load >= pair[0].load)
-    for rising, pairs in steps:
-        ends = list(pairs)
-        found.append((rising, [ends[0][0], *(after for _, after in ends)]))
-    return found or [(True, list(rows))]
+def planar_stretches(rows: Sequence[Row]) -> list[tuple[bool, list[Row]]]:
+    """Return the stretches of rows that are alike in being planar, and whether they are."""
+    return [(planar, list(alike)) for planar, alike in groupby(rows, key=is_planar)]
+
+
+def between_planar(rows: Sequence[Row]) -> tuple[float, float] | None:
+    """Return the loads between which a film first leaves its plane and returns to it."""
+    ascending = sorted(rows, key=lambda row: row.load)
+    states = planar_stretches(ascending)
+    for (before, _), (planar, bent), (after, _) in zip(
+        states, states[1:], states[2:], strict=False
+    ):
+        if before and after and not planar:
+            return bent[0].load, bent[-1].load
+    return None
+
+
+def stable_states(stretches: Sequence[Sequence[Row]]) -> list[Row]:
+    """Return the middle row of each stable stretch of a branch that is no stub.
+
+    Of those alike in load and order parameter, which are mirror images, the first.
+    """
+    rows = [part[len(part) // 2] for part in stretches if len(part) >= _STUB]
+    load = _ALIKE * max((row.load for row in rows), default=0.0)
+    bend = _ALIKE * max((row.abs_kappa_n for row in rows), default=0.0)
+    kept: list[Row] = []
+    for row in rows:
+        if not any(
+            abs(row.load - other.load) <= load
+            and abs(row.abs_kappa_n - other.abs_kappa_n) <= bend
+            for other in kept
+        ):
+            kept.append(row)
+    return kept
 
 
 def _shown(state: list[Row]) -> Row:

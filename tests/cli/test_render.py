@@ -11,8 +11,8 @@ from click.testing import CliRunner
 from eulerplateau.cli.render import render
 from eulerplateau.errors import EulerPlateauError, OutputError, SpecError
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.pictures.gallery import collect
 from eulerplateau.pictures.render import chosen_steps
+from eulerplateau.runs import read_run
 from tests.helpers.shapes import disk_points, mesh_of
 from tests.pictures.test_render import record, twisted
 from tests.runs.test_folder import start
@@ -55,7 +55,7 @@ def test_a_load_means_the_nearest_shape_of_each_leg(tmp_path: Path, mesh: DiskMe
         for step, load in enumerate(loads):
             row = replace(ROW, step=step, kL3_alpha=load)
             folder.record(row, mesh, twisted(mesh, 0.001 * load))
-    (run,) = collect([tmp_path]).runs
+    run = read_run(tmp_path)
     assert chosen_steps(run, [], [110.0]) == [1, 5]
     assert chosen_steps(run, [5, 0], [199.0, 10.0]) == [0, 2, 4, 5]
     assert chosen_steps(run, [], [300.0]) == [3]

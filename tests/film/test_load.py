@@ -16,11 +16,10 @@ from eulerplateau.film.load import FILM_LOADS, LOADS, SPRING_LOAD, TENSION
 from eulerplateau.film.quadratic import FILMS
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.pictures.comparison import runs_figure
-from eulerplateau.pictures.curves import read_runs
 from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.pictures.render.pages import caption
 from eulerplateau.runs import run_branches, run_sweep
-from eulerplateau.runs.reading import read_table, read_tables
+from eulerplateau.runs.record import read_run, read_runs
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.table import BranchRow, Row
 from eulerplateau.settings import validate
@@ -70,7 +69,7 @@ def test_rows_carry_both_loads_and_the_films_own_exactly(tmp_path: Path, film: s
     for row in rows:
         assert row.sigma_hat == pytest.approx(math.sqrt(12) * row.kL3_alpha, rel=1e-15)
         assert row.load == getattr(row, FILM_LOADS[film].column)
-    assert read_table(tmp_path / "out") == list(rows)
+    assert list(read_run(tmp_path / "out").rows) == list(rows)
     assert f"<!-- timestep is the load {FILM_LOADS[film].text} -->" in (
         (tmp_path / "out" / "sweep.pvd").read_text()
     )
@@ -86,7 +85,7 @@ def test_special_points_give_both_loads_with_their_errors(tmp_path: Path) -> Non
     assert row.load == row.sigma_hat == float(special["sigma_hat"])
     for column in ("kL3_alpha", "sigma_hat"):
         assert 0 < float(special[f"{column}_error"]) < 1e-8 * float(special[column])
-    assert read_table(tmp_path / "out") == list(result.rows)
+    assert read_run(tmp_path / "out").rows == result.rows
 
 
 def test_films_of_different_kinds_are_compared_by_their_tension(
@@ -94,11 +93,11 @@ def test_films_of_different_kinds_are_compared_by_their_tension(
 ) -> None:
     springs = record(tmp_path / "a", mesh, [row_at(0, 1.0), row_at(1, 2.0)])
     other = record(tmp_path / "b", mesh, tension_rows(), model="dirichlet")
-    (alone,) = read_tables([springs])
-    assert [row.load for row in alone] == [1.0, 2.0]
-    for rows in read_tables([springs, other]):
-        assert {row.load_name for row in rows} == {TENSION}
-        assert [row.load for row in rows] == [row.sigma_hat for row in rows]
+    alone = read_run(springs)
+    assert [row.load for row in alone.rows] == [1.0, 2.0]
+    for run in read_runs([springs, other]):
+        assert {row.load_name for row in run.rows} == {run.load} == {TENSION}
+        assert [row.load for row in run.rows] == [row.sigma_hat for row in run.rows]
     first, second = (run.label for run in read_runs([springs, other]))
     assert ("springs" in first, "dirichlet" in second) == (True, True)
 
@@ -109,7 +108,7 @@ def test_table_whose_run_says_no_film_is_shown_over_the_load_of_springs(
     folder = record(tmp_path / "run", mesh, tension_rows(), model="dirichlet")
     for text in ('{"spec": {}}', "[]", "{", '{"spec": {"film": {"model": "rubber"}}}'):
         (folder / "run.json").write_text(text)
-        assert {row.load_name for row in read_table(folder)} == {SPRING_LOAD}
+        assert {row.load_name for row in read_run(folder).rows} == {SPRING_LOAD}
 
 
 @pytest.mark.parametrize("what", ["diagram", "curvature", "onset"])

@@ -21,6 +21,7 @@ from eulerplateau.errors import OutputError
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.record import read_run
 from eulerplateau.runs.table import COLUMNS, BranchRow
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
 from tests.runs.test_output import ROW
@@ -96,7 +97,8 @@ def test_page_holds_every_row_and_every_shape_to_16_bits(
     tmp_path: Path, mesh: DiskMesh
 ) -> None:
     gallery = collect([sweep(tmp_path / "run", mesh, [1.0, 400.0, 900.0])])
-    (run,) = gallery.runs
+    (exhibit,) = gallery.exhibits
+    run = exhibit.run
     data = Page(page(gallery)).data
     (shown,) = data["runs"]
     (its_mesh,) = data["meshes"]
@@ -104,8 +106,8 @@ def test_page_holds_every_row_and_every_shape_to_16_bits(
         unpacked(its_mesh["triangles"], "<u4").tolist() == mesh.triangles.ravel().tolist()
     )
     assert unpacked(its_mesh["loop"], "<u4").tolist() == mesh.loop.tolist()
-    x = data["unit"] * unpacked(shown["shapes"], "<i2").reshape(run.shapes.shape)
-    assert np.abs(x - run.shapes).max() < 1e-5
+    x = data["unit"] * unpacked(shown["shapes"], "<i2").reshape(exhibit.x.shape)
+    assert np.abs(x - exhibit.x).max() < 1e-5
     for row, cells in zip(run.rows, shown["rows"], strict=True):
         for name, cell in zip(data["columns"], cells, strict=True):
             value = getattr(row, name, None)
@@ -173,21 +175,24 @@ def test_runs_on_one_mesh_share_its_triangles(tmp_path: Path, mesh: DiskMesh) ->
         branches(tmp_path / "c", mesh),
     ]
     gallery = collect([*folders, folders[0]])
-    assert [run.name for run in gallery.runs] == ["a/run", "b/run", f"{tmp_path.name}/c"]
-    assert [run.mesh for run in gallery.runs] == [0, 1, 0]
+    names = [exhibit.run.name for exhibit in gallery.exhibits]
+    assert names == ["a/run", "b/run", f"{tmp_path.name}/c"]
+    assert [exhibit.mesh for exhibit in gallery.exhibits] == [0, 1, 0]
     assert len(gallery.meshes) == 2
     # A run starts where the first on its mesh does, turned alike.
-    assert np.allclose(gallery.runs[0].shapes[0], gallery.runs[2].shapes[0], atol=1e-3)
+    first, _, third = gallery.exhibits
+    assert np.allclose(first.x[0], third.x[0], atol=1e-3)
 
 
 def test_branches_start_at_their_special_point(tmp_path: Path, mesh: DiskMesh) -> None:
-    (run,) = collect([branches(tmp_path / "run", mesh)]).runs
-    places = [(series.origin, series.first, series.last) for series in run.series]
+    (exhibit,) = collect([branches(tmp_path / "run", mesh)]).exhibits
+    run = exhibit.run
+    places = [(series.start, series.first, series.last) for series in run.series]
     assert places == [(None, 0, 2), (1, 3, 4), (1, 5, 6)]
     assert run.series[1].group == run.series[2].group != run.series[0].group
     assert run.special[7]["kind"] == "bifurcation"
     for series in run.series[1:]:
-        step = run.shapes[series.first] - run.shapes[1]
+        step = exhibit.x[series.first] - exhibit.x[1]
         assert np.abs(step).max() < 0.05
 
 
@@ -205,8 +210,8 @@ def test_branches_start_at_their_special_point(tmp_path: Path, mesh: DiskMesh) -
 def test_sweep_is_split_where_its_load_turns(
     tmp_path: Path, mesh: DiskMesh, loads: list[float], legs: list[Any]
 ) -> None:
-    (run,) = collect([sweep(tmp_path / "run", mesh, loads)]).runs
-    assert [(leg.origin, leg.first, leg.last) for leg in run.series] == legs
+    run = read_run(sweep(tmp_path / "run", mesh, loads))
+    assert [(leg.start, leg.first, leg.last) for leg in run.series] == legs
 
 
 @pytest.mark.parametrize(
@@ -256,7 +261,7 @@ def test_table_of_special_points_that_is_none_is_named(
         collect([run])
     assert caught.value.path == run / "special_points.csv"
     (run / "special_points.csv").unlink()
-    assert collect([run]).runs[0].special == {}
+    assert collect([run]).exhibits[0].run.special == {}
 
 
 def run_command(*arguments: str | Path) -> subprocess.CompletedProcess[str]:

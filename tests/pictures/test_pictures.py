@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.pictures.alignment import aligned
 from eulerplateau.pictures.child import draw_in_child
-from eulerplateau.pictures.plots import draw_diagram, plot_diagram
-from eulerplateau.pictures.render import aligned, draw_shapes
+from eulerplateau.pictures.render import draw_shapes
+from eulerplateau.pictures.sweep_diagram import draw_diagram, plot_diagram
+from eulerplateau.runs.record import Run
 from eulerplateau.runs.shape_files import Shape
 from eulerplateau.runs.states import distinct_steps
 from eulerplateau.runs.table import Row, RowWriter
@@ -154,7 +156,7 @@ def volume(shape: Shape) -> float:
     return float(np.linalg.det(p[1:] - p[0]))
 
 
-def test_diagram_is_drawn_in_a_child(tmp_path: Path, rows: list[Row]) -> None:
+def test_diagram_is_drawn(tmp_path: Path, rows: list[Row]) -> None:
     rows[4] = replace(rows[4], status=STALLED)
     with RowWriter(tmp_path / "sweep.csv") as table:
         for row in rows:
@@ -173,7 +175,7 @@ def test_every_sweep_has_a_diagram(tmp_path: Path, rows: list[Row], case: str) -
         "up and down": [*rows, *rows[-2::-1]],
         "nan": [replace(row, waist_twist=math.nan, energy=math.inf) for row in rows],
     }[case]
-    plot_diagram(chosen, tmp_path / "diagram.png")
+    plot_diagram(Run(tmp_path, tuple(chosen)), tmp_path / "diagram.png")
     assert read_png(tmp_path / "diagram.png").std() > 0.01
 
 

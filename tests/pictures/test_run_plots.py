@@ -25,8 +25,8 @@ from eulerplateau.branches.scaling import fit_power
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.pictures.comparison import WHAT, plot_runs, runs_figure
-from eulerplateau.pictures.curves import read_runs
 from eulerplateau.pictures.onset import fit_onset
+from eulerplateau.runs.record import read_runs
 from eulerplateau.solvers.equilibrium import Status
 from tests.helpers.plotted_runs import ONSET, loads, pitchfork, record, row_at
 from tests.helpers.shapes import disk_points, mesh_of

@@ -238,7 +238,7 @@ def test_path_below_a_file_is_an_output_error(tmp_path: Path, mesh: DiskMesh) ->
 
 
 def test_records_need_no_picture_library() -> None:
-    names = "runs.folder", "pictures.plots", "pictures.render.drawing"
+    names = "runs.folder", "pictures.sweep_diagram", "pictures.render.drawing"
     modules = ", ".join(f"eulerplateau.{name}" for name in names)
     script = (
         f"import sys, {modules}; "

@@ -1,8 +1,7 @@
 from .collection import (
+    Exhibit as Exhibit,
     Gallery as Gallery,
     Mesh as Mesh,
-    Run as Run,
-    Series as Series,
     collect as collect,
 )
 from .document import page as page

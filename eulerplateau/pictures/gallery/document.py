@@ -7,16 +7,15 @@ import html
 import json
 import math
 import re
-from dataclasses import asdict
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eulerplateau.pictures.gallery.alignment import EYE
-from eulerplateau.pictures.gallery.collection import Gallery, Mesh, Run
-from eulerplateau.runs import COLUMNS
+from eulerplateau.pictures.alignment import EYE
+from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
+from eulerplateau.runs import COLUMNS, Series
 
 # Beyond what is drawn, and at most 1e-5 L away from it: 16 bits for a loop of length 1.
 _INT16 = 32767
@@ -30,7 +29,7 @@ def page(gallery: Gallery) -> bytes:
     Positions are rounded to 16 bits: by less than 1e-5 L. The page's content policy
     forbids the browser to load anything from anywhere.
     """
-    title = ", ".join(run.name for run in gallery.runs)
+    title = ", ".join(shown.run.name for shown in gallery.exhibits)
     parts = {
         "title": html.escape(title),
         "licences": _part("vendor/LICENSES.txt"),
@@ -49,21 +48,21 @@ def _part(name: str) -> str:
 
 
 def _data(gallery: Gallery) -> dict[str, Any]:
-    size = max(float(np.abs(run.shapes).max()) for run in gallery.runs)
+    size = max(float(np.abs(shown.x).max()) for shown in gallery.exhibits)
     # Across and up the first view, in which z points up.
     across = np.cross([0.0, 0.0, 1.0], EYE)
     screen = np.stack([across, np.cross(EYE, across)], axis=1)
     screen /= np.linalg.norm(screen, axis=0)
-    seen = [np.abs(run.shapes @ screen).max(axis=(0, 1)) for run in gallery.runs]
+    seen = [np.abs(shown.x @ screen).max(axis=(0, 1)) for shown in gallery.exhibits]
     unit = size / _INT16 or 1.0
     return {
         "columns": [*COLUMNS, "special"],
-        "load": gallery.runs[0].rows[0].quantity,
+        "load": gallery.exhibits[0].run.load.column,
         "unit": unit,
         "eye": EYE.tolist(),
         "halfSize": np.max(seen, axis=0).tolist(),
         "meshes": [_mesh(mesh) for mesh in gallery.meshes],
-        "runs": [_run(run, unit) for run in gallery.runs],
+        "runs": [_run(shown, unit) for shown in gallery.exhibits],
     }
 
 
@@ -75,20 +74,31 @@ def _mesh(mesh: Mesh) -> dict[str, Any]:
     }
 
 
-def _run(run: Run, unit: float) -> dict[str, Any]:
+def _run(shown: Exhibit, unit: float) -> dict[str, Any]:
+    run, shapes = shown.run, shown.shapes
     return {
         "name": run.name,
-        "mesh": run.mesh,
+        "mesh": shown.mesh,
         "tilings": [
-            [first, _base64(tiles.astype("<u4"))] for first, tiles in run.tilings[1:]
+            [first, _base64(tiles.astype("<u4"))] for first, tiles in shapes.tilings[1:]
         ],
-        "shapes": _base64(np.rint(run.shapes / unit).astype("<i2")),
-        "series": [asdict(series) for series in run.series],
+        "shapes": _base64(np.rint(shown.x / unit).astype("<i2")),
+        "series": [_series(series) for series in run.series],
         "special": run.special,
         "rows": [
             [_value(getattr(row, name, None)) for name in (*COLUMNS, "special")]
             for row in run.rows
         ],
+    }
+
+
+def _series(series: Series) -> dict[str, Any]:
+    return {
+        "name": series.name,
+        "group": series.group,
+        "first": series.first,
+        "last": series.last,
+        "origin": series.start,
     }
 
 

@@ -1,4 +1,4 @@
-"""Pictures of the film: stills, contact sheets, animations, always in a child process."""
+"""Renders: stills, contact sheets, animations of films, always in a child process."""
 
 import lazy_loader
 

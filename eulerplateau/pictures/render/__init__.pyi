@@ -1,4 +1,3 @@
-from .alignment import aligned as aligned
 from .choice import chosen_steps as chosen_steps
 from .colours import SIDES as SIDES, SOAP as SOAP
 from .drawing import (

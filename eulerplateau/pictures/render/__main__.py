@@ -1,4 +1,4 @@
-"""`python -m eulerplateau.render DIR KIND COLOUR STEP...`: what `draw_shapes` starts."""
+"""The child that renders: `python -m eulerplateau.pictures.render DIR KIND COLOUR STEP`."""
 
 from __future__ import annotations
 

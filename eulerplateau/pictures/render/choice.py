@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from eulerplateau.errors import SpecError
-from eulerplateau.pictures.gallery import Run
-from eulerplateau.runs import distinct_steps
+from eulerplateau.runs import Run, distinct_steps
 
 
 def chosen_steps(run: Run, steps: Sequence[int], loads: Sequence[float]) -> list[int]:
@@ -33,12 +34,9 @@ def _nearest(run: Run, load: float) -> list[int]:
     """Return the step nearest to `load` on each branch, or leg, that reaches it."""
     found = []
     for series in run.series:
-        rows = list(run.rows[series.first : series.last + 1])
-        if series.origin is not None:
-            rows.insert(0, run.rows[series.origin])
-        loads = [row.load for row in rows]
-        if min(loads) <= load <= max(loads):
-            found.append(min(rows, key=lambda row: abs(row.load - load)).step)
+        if series.loads.min() <= load <= series.loads.max():
+            nearest = np.argmin(np.abs(series.loads - load))
+            found.append(series.rows[nearest].step)
     if not found:
         loads = [row.load for row in run.rows]
         problem = f"no branch reaches {load:g}: loads are {min(loads):g} to {max(loads):g}"

@@ -13,6 +13,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
+from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.runs import Shape
 
 SIDES, SOAP = "sides", "soap"
@@ -62,6 +63,7 @@ class Scale:
 
     def rgb(self, values: FloatArray) -> FloatArray:
         """Return the colours (n, 3) of `values` (n,)."""
+        load_matplotlib()
         from matplotlib import colormaps
 
         part = np.clip((values - self.low) / (self.high - self.low), 0.0, 1.0)
@@ -87,7 +89,7 @@ def scale_of(name: str, fields: Sequence[FloatArray]) -> Scale:
 
 
 @dataclass(frozen=True)
-class Film:
+class PaintedFilm:
     """A film ready to be painted, farthest triangle first.
 
     Attributes
@@ -106,7 +108,7 @@ def coloured_film(
     colour: str,
     values: FloatArray | None,
     scale: Scale | None,
-) -> Film:
+) -> PaintedFilm:
     """Return the film as seen, and lit, from the direction `eye` (3,).
 
     `colour` is SIDES, SOAP or the name of a field with its `values` (n_v,) and `scale`; a
@@ -126,7 +128,7 @@ def coloured_film(
         opacity = 1.0 - (1.0 - _THIN) ** (1.0 / np.maximum(facing, 0.2))
         rgb += (1.0 - rgb) * shine[..., None]
     rgba = np.concatenate([rgb, opacity[..., None]], axis=2)[order]
-    return Film(shape.x[triangles[order]].reshape(-1, 3), rgba.reshape(-1, 4))
+    return PaintedFilm(shape.x[triangles[order]].reshape(-1, 3), rgba.reshape(-1, 4))
 
 
 def loop_colours(

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.pictures.render.colours import Scale
 from eulerplateau.pictures.render.scene import Pixels
-from eulerplateau.pictures.render.view import ASPECT
+from eulerplateau.pictures.view import ASPECT
 from eulerplateau.runs import BranchRow, Row
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def caption(row: Row) -> str:
 
 def captioned(pixels: Pixels, text: str, scale: Scale | None) -> Pixels:
     """Return the image with its caption, and the colour bar of `scale` if there is one."""
+    load_matplotlib()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

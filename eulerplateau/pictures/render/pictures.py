@@ -9,8 +9,7 @@ from pathlib import Path
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import write_whole
-from eulerplateau.pictures.gallery import Run, collect
-from eulerplateau.pictures.render.alignment import aligned
+from eulerplateau.pictures.alignment import aligned, settled_runs
 from eulerplateau.pictures.render.choice import chosen_steps
 from eulerplateau.pictures.render.colours import (
     SIDES,
@@ -23,8 +22,8 @@ from eulerplateau.pictures.render.colours import (
 from eulerplateau.pictures.render.fields import read_field
 from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
-from eulerplateau.pictures.render.view import View, common_view, turning_views
-from eulerplateau.runs import Shape, shape_name
+from eulerplateau.pictures.view import View, common_view, turning_views
+from eulerplateau.runs import Run, Shape, read_run
 
 _WIDTH, _FRAME_WIDTH = 1200, 640
 _TURN_FRAMES = 48
@@ -37,8 +36,7 @@ class RunPictures:
 
     Attributes
     ----------
-    folder : the run folder; pictures go to its subfolder pictures/
-    run : its rows
+    run : its rows; pictures go to the subfolder pictures/ of its folder
     shapes : one per row, each turned as little as can be from the one before it
     places : the numbers of the rows to be shown
     colour : "sides" (front of the film blue, back orange), "soap" (the same, translucent)
@@ -47,7 +45,6 @@ class RunPictures:
     scale : the colours of the field at all `places`
     """
 
-    folder: Path
     run: Run
     shapes: tuple[Shape, ...]
     places: tuple[int, ...]
@@ -62,20 +59,15 @@ class RunPictures:
         Raises OutputError if a shape cannot be read, SpecError if there is no such step
         or field.
         """
-        found = collect([folder])
-        run, mesh = found.runs[0], found.meshes[0]
+        run = read_run(folder)
         wanted = chosen_steps(run, steps, [])
         places = [place for place, row in enumerate(run.rows) if row.step in wanted]
         fields = {}
         if colour not in (SIDES, SOAP):
-            names = {place: shape_name(run.rows[place].step) for place in places}
-            fields = {i: read_field(folder / name, colour) for i, name in names.items()}
+            paths = {place: run.shape_path(run.rows[place]) for place in places}
+            fields = {place: read_field(path, colour) for place, path in paths.items()}
         scale = scale_of(colour, list(fields.values())) if fields else None
-        shapes = [
-            Shape(x, run.triangles(i), mesh.loop, row.step, row.kL3_alpha, row.energy)
-            for i, (row, x) in enumerate(zip(run.rows, run.shapes, strict=True))
-        ]
-        return cls(folder, run, tuple(shapes), tuple(places), colour, fields, scale)
+        return cls(run, _followed(run), tuple(places), colour, fields, scale)
 
     def stills(self) -> None:
         """Draw shape_*.png and, of several, a contact sheet, sheet.png.
@@ -122,10 +114,20 @@ class RunPictures:
         return captioned(pixels, caption(self.run.rows[place]), self.scale)
 
     def _write(self, name: str, suffix: str, content: bytes) -> None:
-        pictures = self.folder / "pictures"
+        pictures = self.run.folder / "pictures"
         try:
             pictures.mkdir(exist_ok=True)
         except OSError as error:
             raise OutputError(pictures, f"cannot be made: {error.strerror}") from None
         coloured = name if self.colour == SIDES else f"{name}_{self.colour}"
         write_whole(pictures / f"{coloured}.{suffix}", content)
+
+
+def _followed(run: Run) -> tuple[Shape, ...]:
+    """Return the shapes of a run, each turned as little as can be from the one before."""
+    found = run.shapes()
+    (x,) = settled_runs([(run.series, found.x)], found.loop)
+    return tuple(
+        Shape(own, found.triangles(place), found.loop, row.step, row.kL3_alpha, row.energy)
+        for place, (row, own) in enumerate(zip(run.rows, x, strict=True))
+    )

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.pictures.render.colours import Film
-from eulerplateau.pictures.render.view import ASPECT, LOOP_RADIUS, UP, View
+from eulerplateau.pictures.render.colours import PaintedFilm
+from eulerplateau.pictures.view import ASPECT, LOOP_RADIUS, UP, View
 from eulerplateau.runs import Shape
 
 Pixels = NDArray[np.uint8]
@@ -48,7 +48,9 @@ class Scene:
     ) -> None:
         self._plotter.close()
 
-    def pixels(self, shape: Shape, film: Film, loop_rgb: FloatArray, view: View) -> Pixels:
+    def pixels(
+        self, shape: Shape, film: PaintedFilm, loop_rgb: FloatArray, view: View
+    ) -> Pixels:
         """Return an image (height, width, 3) of the film and its loop (n_b, 3 colours)."""
         plotter = self._plotter
         # Or each change would be rendered at once.
@@ -69,7 +71,7 @@ class Scene:
         return pixels
 
 
-def _surface(film: Film) -> Any:
+def _surface(film: PaintedFilm) -> Any:
     import pyvista
 
     triangles: Any = np.arange(len(film.corners)).reshape(-1, 3)

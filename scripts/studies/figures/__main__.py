@@ -12,12 +12,11 @@ import click
 import numpy as np
 
 from eulerplateau.exact.planar import thresholds
-from eulerplateau.pictures import fit_onset, read_runs
+from eulerplateau.pictures import fit_onset
 from eulerplateau.pictures.comparison import runs_figure
-from eulerplateau.pictures.curves import Run
 from eulerplateau.pictures.figure import save
 from eulerplateau.pictures.planar import plot_energy, plot_gallery
-from eulerplateau.runs import Row, load_run, run_sweep
+from eulerplateau.runs import Row, Run, load_run, read_run, run_sweep
 from scripts.studies.common import ROOT, markdown_table
 
 # Integral of |kappa_n| ds up to which a film is flat, as in scripts/transitions.
@@ -175,7 +174,7 @@ def draw_bifurcation(path: Path) -> list[Number]:
 def carried_out(name: str, folder: Path) -> Run:
     """Carry out runs/NAME.toml and return the run."""
     run_sweep(load_run(ROOT / "runs" / f"{name}.toml", {}), folder / name)
-    return read_runs([folder / name])[0]
+    return read_run(folder / name)
 
 
 def steps_at(run: Run, loads: Sequence[float]) -> list[int]:

@@ -1,4 +1,4 @@
-"""Shapes in the gallery follow each other: no rigid motion, no mirror, no jump."""
+"""Shapes follow each other: no rigid motion, no mirror, no jump."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.pictures.gallery.alignment import settled
+from eulerplateau.pictures.alignment import settled
 from tests.helpers.shapes import disk_points, fitted_order, mesh_of, rotation
 from tests.pictures.test_gallery import twisted
 
@@ -54,3 +54,22 @@ def test_alignment_follows_a_film_that_turns_over_without_a_jump(mesh: DiskMesh)
         sizes.append(1.0 / count)
         moves.append(float(np.abs(np.diff(followed, axis=0)).max()))
     assert fitted_order(sizes, moves) == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("t", [0.05, 0.5, 0.9])
+def test_a_film_and_its_mirror_image_stay_mirror_images(mesh: DiskMesh, t: float) -> None:
+    """Turned close to its mirror image a film keeps its hand: the sign of its volumes."""
+    x = twisted(mesh, t) @ rotation()
+    mirror = x * [1.0, 1.0, -1.0]
+    for pair in ([x, mirror], [mirror, x]):
+        followed = settled(np.array(pair), [None, 0], mesh.loop)
+        for before, after in zip(pair, followed, strict=True):
+            assert volume(after, mesh) == pytest.approx(volume(before, mesh))
+            assert np.allclose(gram(after), gram(before), atol=1e-12)
+
+
+def test_planar_films_are_turned_and_not_mirrored(mesh: DiskMesh) -> None:
+    """Distances do not tell a planar film's mirror image from half a turn of it."""
+    flat = mesh.x * [1.0, 0.8, 0.0]
+    followed = settled(np.array([flat, flat @ rotation()]), [None, 0], mesh.loop)
+    assert np.abs(followed[1] - followed[0]).max() < 1e-12

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from eulerplateau.branches.special import BIFURCATION, FOLD
-from eulerplateau.pictures.branch_plots import draw_branches, plot_branches
+from eulerplateau.pictures.branch_diagram import draw_branches, plot_branches
+from eulerplateau.runs.record import Run
 from eulerplateau.runs.series import Branch, energy_above, read_branches, signed_twists
 from eulerplateau.runs.table import BranchRow, RowWriter
 from tests.helpers.shapes import fitted_order
@@ -112,15 +113,15 @@ def test_energies_are_compared_at_equal_loads(branches: list[Branch]) -> None:
     assert np.abs(above(branches[0])).max() < 1e-12
     s = np.array([0.0, 0.1, 0.4, 0.7, 0.9])
     assert above(branches[1])[:-1] == pytest.approx(-(s**4), abs=1e-10)
-    short = Branch(0, None, branches[0].rows[:3])
+    short = Branch(branches[0].rows[:3])
     assert np.isnan(energy_above(short)(branches[1])).all()
-    single = Branch(0, None, branches[0].rows[:1])
+    single = Branch(branches[0].rows[:1])
     assert np.isnan(energy_above(single)(branches[1])).all()
 
 
 def test_first_branch_counts_up_to_where_it_folds(branches: list[Branch]) -> None:
     rows = branches[0].rows
-    folded = Branch(0, None, (*rows[:4], *rows[2::-1]))
+    folded = Branch((*rows[:4], *rows[2::-1]))
     assert np.isnan(energy_above(folded)(branches[3])).all()
     assert np.abs(energy_above(folded)(folded)).max() < 1e-12
 
@@ -132,9 +133,9 @@ def test_energy_is_interpolated_to_fourth_order() -> None:
         loads = np.linspace(100.0, 200.0, n + 1)
         rows = [point(0, load, 0, energy=math.log(load), film_energy=1.0) for load in loads]
         middle = 0.5 * (loads[0] + loads[1])
-        probe = Branch(1, None, (point(1, middle, 0, energy=math.log(middle)),))
+        probe = Branch((point(1, middle, 0, energy=math.log(middle)),), number=1)
         sizes.append(1.0 / n)
-        errors.append(float(energy_above(Branch(0, None, tuple(rows)))(probe)[0]))
+        errors.append(float(energy_above(Branch(tuple(rows)))(probe)[0]))
     assert fitted_order(sizes, errors) == pytest.approx(4.0, abs=0.3)
 
 
@@ -176,14 +177,16 @@ def test_many_special_points_find_room(tmp_path: Path) -> None:
 
 
 def check_picture(folder: Path, rows: Sequence[BranchRow], kinds: dict[int, str]) -> None:
-    plot_branches(rows, kinds, folder / "branches.png")
+    special = {number: {"kind": kind} for number, kind in kinds.items()}
+    run = Run(folder, tuple(rows), special=special)
+    plot_branches(run, folder / "branches.png")
     image = read_png(folder / "branches.png")
     assert image.std() > 0.05
     frame = np.concatenate([image[0], image[-1], image[:, 0], image[:, -1]])
     assert (frame == 1.0).all()
 
 
-def test_folder_is_drawn_in_a_child(tmp_path: Path) -> None:
+def test_folder_is_drawn(tmp_path: Path) -> None:
     with RowWriter(tmp_path / "branches.csv", BranchRow) as table:
         for row in diagram():
             table.append(row)

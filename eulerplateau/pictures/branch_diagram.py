@@ -1,0 +1,236 @@
+"""The diagram of all branches, branches.png: what is stable, and where branches meet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain, cycle
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from eulerplateau.branches import BIFURCATION, FOLD
+from eulerplateau.errors import OutputError
+from eulerplateau.pictures.figure import (
+    ABS_KAPPA_N,
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    drawn,
+    enlarged,
+    figure_of_panels,
+    save,
+)
+from eulerplateau.pictures.panels import (
+    DASHES,
+    Curve,
+    Look,
+    Panel,
+    draw_panels,
+    legend_above,
+    panel,
+)
+from eulerplateau.runs import (
+    Branch,
+    Run,
+    Series,
+    energy_above,
+    read_run,
+    signed_twists,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+# After black for the first branch, in turn; one colour for the branches of one origin.
+_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
+_STABLE: dict[str, Any] = {"linestyle": "-", "linewidth": 1.6, "zorder": 3}
+_UNSTABLE: dict[str, Any] = {"linestyle": DASHES, "linewidth": 0.9, "zorder": 2}
+# Above all curves, and below the crosses of what did not converge.
+_POINT: dict[str, Any] = {"linestyle": "none", "color": BLACK, "zorder": 3.5}
+_MARKERS: dict[str, dict[str, Any]] = {
+    BIFURCATION: {**_POINT, "marker": "o", "markersize": 4.5, "markerfacecolor": "white"},
+    FOLD: {**_POINT, "marker": "D", "markersize": 4.0},
+}
+_NOT_CONVERGED: dict[str, Any] = {**_POINT, "marker": "x", "markersize": 5.0, "zorder": 4}
+_LEADER: dict[str, Any] = {
+    "arrowstyle": "-", "linewidth": 0.5, "relpos": (0.5, 0.0), "shrinkA": 0, "shrinkB": 0
+}  # fmt: skip
+# Special points closer than this part of the loads shown share a label, and labels are
+# kept this part of them apart.
+_TOGETHER, _APART = 5e-3, 0.05
+# A planar film's twist jumps by half turns where its rim passes through itself.
+_JUMP = 90.0
+
+
+def draw_branches(folder: Path) -> bool:
+    """Draw branches.png of a folder; return whether it was drawn, and log why not."""
+    path = folder / "branches.png"
+    return drawn(str(path), lambda: plot_branches(read_run(folder), path))
+
+
+def plot_branches(run: Run, path: Path) -> None:
+    """Draw the branches of a run to the PNG file `path`; solid where stable, else dashed.
+
+    Over the load: the loop's total normal curvature, the order parameter of the paper, in
+    which mirror images coincide; the twist of the film's normal across the waist, in which
+    they do not; and the energy above that of the first branch, which tells the state of
+    least energy. Markers tell folds from bifurcations, and lines at the top give their
+    loads. A second column enlarges the first stable branch that runs from one special
+    point to another, if it is short. Raises OutputError if the file cannot be written, or
+    a special point is not in special_points.csv.
+    """
+    kinds = _kinds(run)
+    colours = _colours(run.branches)
+    panels = _panels(run.branches)
+    window = _window(run.branches)
+    figure = figure_of_panels(1 if window is None else 2)
+    curves = [_curve(branch, colours[branch.origin]) for branch in run.branches]
+    axes = draw_panels(figure, panels, curves, run.load.label, window=window)
+    loads = _loads(run)
+    for what, line in zip(panels, axes, strict=True):
+        for ax in line:
+            _mark(ax, what, run.branches, kinds)
+            ax.ticklabel_format(useOffset=False)
+    for column in axes.T:
+        _name_loads(column, loads.values())
+    figure.align_ylabels()
+    handles = _handles(run.branches, colours, sorted({kinds[number] for number in loads}))
+    legend_above(figure, handles, columns=2 if window is None else 3)
+    save(figure, path)
+
+
+def _panels(branches: Sequence[Branch]) -> tuple[Panel, ...]:
+    excess = energy_above(branches[0])
+
+    def twists(series: Series) -> Sequence[Any]:
+        return signed_twists(cast(Branch, series))
+
+    return (
+        panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),
+        Panel("waist twist (deg)", twists, jump=_JUMP, solid_only=True),
+        Panel(r"$(E-E_0)\,L/\alpha$", lambda branch: [excess(branch)], solid_only=True),
+    )
+
+
+def _curve(branch: Branch, colour: str) -> Curve:
+    stable, unstable = ({"color": colour, **style} for style in (_STABLE, _UNSTABLE))
+    return branch, Look(stable, unstable, _NOT_CONVERGED)
+
+
+def _loads(run: Run) -> dict[int, float]:
+    """Return the loads of the special points by number."""
+    rows = [row for branch in run.branches for row in branch.rows]
+    return {row.special: row.load for row in rows if row.special is not None}
+
+
+def _kinds(run: Run) -> dict[int, str]:
+    """Return the kinds, FOLD or BIFURCATION, of the special points by number."""
+    try:
+        return {number: run.special[number]["kind"] for number in _loads(run)}
+    except KeyError:
+        path = run.folder / "special_points.csv"
+        raise OutputError(path, "does not name the kinds of all special points") from None
+
+
+def _mark(
+    ax: Axes, what: Panel, branches: Sequence[Branch], kinds: Mapping[int, str]
+) -> None:
+    """Mark the special points on the curves of a panel."""
+    for branch in branches:
+        for values in what.values(branch):
+            for row, value in zip(branch.rows, values, strict=True):
+                if row.special is not None:
+                    ax.plot(row.load, value, **_MARKERS[kinds[row.special]])
+
+
+def _colours(branches: Sequence[Branch]) -> dict[int | None, str]:
+    """Return a colour for each origin: black for the first branch, the others in turn."""
+    origins = dict.fromkeys(branch.origin for branch in branches)
+    return dict(zip(origins, chain([BLACK], cycle(_COLOURS)), strict=False))
+
+
+def _window(branches: Sequence[Branch]) -> tuple[float, float] | None:
+    """Return the loads to enlarge, or None if no short branch asks for it."""
+    loads = np.concatenate([branch.loads for branch in branches])
+    for branch in branches:
+        window = enlarged(branch.loads.min(), branch.loads.max(), loads)
+        if branch.bridges and window is not None:
+            return window
+    return None
+
+
+def _name_loads(column: Sequence[Axes], special: Iterable[float]) -> None:
+    """Write the loads of special points above a column, with lines down to them."""
+    low, high = column[0].get_xlim()
+    groups: list[list[float]] = []
+    for load in sorted(load for load in special if low <= load <= high):
+        if groups and load - groups[-1][-1] < _TOGETHER * (high - low):
+            groups[-1].append(load)
+        else:
+            groups.append([load])
+    middles = [0.5 * (group[0] + group[-1]) for group in groups]
+    for ax in column:
+        for middle in middles:
+            ax.axvline(middle, color="0.8", linewidth=0.6, zorder=0)
+    places = _spread(middles, low, high)
+    for group, middle, place in zip(groups, middles, places, strict=True):
+        column[0].annotate(
+            _name(group),
+            xy=(middle, 1.0),
+            xycoords=column[0].get_xaxis_transform(),
+            xytext=(place, 1.06),
+            textcoords=column[0].get_xaxis_transform(),
+            rotation=90,
+            ha="center",
+            va="bottom",
+            fontsize=7,
+            arrowprops=_LEADER,
+        )
+
+
+def _name(group: Sequence[float]) -> str:
+    first, last = f"{group[0]:.6g}", f"{group[-1]:.6g}"
+    span = first if first == last else f"{first}\u2013{last}"
+    return span if len(group) == 1 else f"{span} ({len(group)})"
+
+
+def _spread(middles: Sequence[float], low: float, high: float) -> list[float]:
+    """Return places for labels near ascending `middles`, apart and inside the axis."""
+    apart = _APART * (high - low)
+    places: list[float] = []
+    for middle in middles:
+        places.append(max(middle, places[-1] + apart if places else low))
+    limit = high
+    for i in reversed(range(len(places))):
+        places[i] = min(places[i], limit)
+        limit = places[i] - apart
+    return places
+
+
+def _handles(
+    branches: Sequence[Branch], colours: Mapping[int | None, str], kinds: Sequence[str]
+) -> list[Artist]:
+    """Return what explains styles and markers, and says which branch is which colour."""
+    from matplotlib.lines import Line2D
+
+    lines: list[Artist] = [Line2D([], [], color=BLACK, label="stable", **_STABLE)]
+    lines.append(Line2D([], [], color=BLACK, label="unstable", **_UNSTABLE))
+    lines += [Line2D([], [], label=kind, **_MARKERS[kind]) for kind in kinds]
+    if any(not row.converged for branch in branches for row in branch.rows):
+        lines.append(Line2D([], [], label="not converged", **_NOT_CONVERGED))
+    alike: dict[int | None, list[Branch]] = {}
+    for branch in branches:
+        alike.setdefault(branch.origin, []).append(branch)
+    for origin, members in alike.items():
+        numbers = ", ".join(str(branch.number) for branch in members)
+        name = f"branch {numbers}" if len(members) == 1 else f"branches {numbers}"
+        if origin is not None:
+            name += f", from {members[0].rows[0].load:.6g}"
+        lines.append(Line2D([], [], color=colours[origin], linewidth=1.6, label=name))
+    return lines

@@ -1,0 +1,226 @@
+"""A run folder read back: its rows, its film's load, its special points, its shapes."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from eulerplateau.errors import MissingLibraryError, OutputError
+from eulerplateau.film import FILM_LOADS, SPRING_LOAD, TENSION, Load
+from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
+from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
+from eulerplateau.runs.states import between_planar, distinct_steps, stable_states
+from eulerplateau.runs.table import BranchRow, Row, columns, read_rows
+
+
+@dataclass(frozen=True, repr=False)
+class Run:
+    """A run folder, of a sweep or of branches, read back; it prints in a line.
+
+    Attributes
+    ----------
+    folder : Path
+    rows : of sweep.csv, or BranchRow of branches.csv
+    name : str, the last parts of the folder's path, as many as tell the runs read together
+    label : str, the name, and what of film, mesh and solver tells them
+    about : what run.json says; empty if it says nothing
+    special : by number, what special_points.csv says of each point; empty for a sweep
+    """
+
+    folder: Path
+    rows: tuple[Row, ...]
+    name: str = ""
+    label: str = ""
+    about: Mapping[str, Any] = field(default_factory=dict)
+    special: Mapping[int, Mapping[str, str]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        kind = f"points on {len(self.branches)} branches" if self.branches else "loads"
+        loads = [row.load for row in self.rows]
+        window = f", {self.load.text} {min(loads):g} to {max(loads):g}" if loads else ""
+        status = self.about.get("status", "no status")
+        name = self.name or self.folder.name
+        return f"<Run {name}: {len(self.rows)} {kind}{window}, {status}>"
+
+    @property
+    def load(self) -> Load:
+        """The load its rows are read and shown over."""
+        return self.rows[0].load_name if self.rows else SPRING_LOAD
+
+    @cached_property
+    def branches(self) -> tuple[Branch, ...]:
+        """Its branches; none if it is a sweep."""
+        return tuple(read_branches([r for r in self.rows if isinstance(r, BranchRow)]))
+
+    @cached_property
+    def series(self) -> tuple[Branch, ...] | tuple[Leg, ...]:
+        """The curves of its diagram, which cover all rows in order: branches, or legs."""
+        return self.branches or tuple(read_legs(self.rows))
+
+    @property
+    def first_leg(self) -> list[Row]:
+        """The converged rows of a sweep up to where its load turns, or of branch 0."""
+        return [row for row in self.series[0].rows if row.converged]
+
+    @property
+    def saddle(self) -> tuple[float, float] | None:
+        """The loads between which a film first leaves its plane and returns to it."""
+        if not self.branches:
+            return between_planar(self.first_leg)
+        bridge = next((branch for branch in self.branches if branch.bridges), None)
+        return None if bridge is None else (bridge.loads.min(), bridge.loads.max())
+
+    def states(self) -> list[Row]:
+        """Return one row for each distinct state, by load."""
+        if self.branches:
+            found = stable_states(
+                [
+                    branch.rows[part]
+                    for branch in self.branches
+                    for stable, part in branch.stretches()
+                    if stable
+                ]
+            )
+        else:
+            chosen = set(distinct_steps(self.rows))
+            found = [row for row in self.rows if row.step in chosen]
+        return sorted(found, key=lambda row: row.load)
+
+    def shape_path(self, row: Row) -> Path:
+        """Return the file of a row's shape."""
+        return self.folder / shape_name(row.step)
+
+    def shapes(self) -> ShapeSequence:
+        """Read the shapes of all rows, as `read_shapes` does."""
+        return read_shapes([self.shape_path(row) for row in self.rows])
+
+    def table(self) -> Any:
+        """Return the rows as a pandas DataFrame, with the columns of the file.
+
+        Raises MissingLibraryError if there is no pandas, which only this asks for.
+        """
+        try:
+            import pandas
+        except ImportError:
+            problem = "a table of rows needs pandas: pip install pandas"
+            raise MissingLibraryError(problem) from None
+        names = columns(type(self.rows[0]) if self.rows else Row)
+        cells = {name: [getattr(row, name) for row in self.rows] for name in names}
+        cells["status"] = [status.value for status in cells["status"]]
+        return pandas.DataFrame(cells)
+
+
+def read_run(folder: str | Path) -> Run:
+    """Read a run folder as `sweep` and `branches` write it, finished or not.
+
+    Raises OutputError naming the folder if it is no run or has no rows yet, or the table
+    that cannot be read.
+    """
+    return read_runs([Path(folder)])[0]
+
+
+def read_runs(folders: Sequence[Path]) -> list[Run]:
+    """Read run folders to be compared; raises what `read_run` raises.
+
+    A folder named twice counts once; of films of different kinds all loads are sigma_hat.
+    """
+    distinct = list({folder.resolve(): folder for folder in folders}.values())
+    runs = [_read(folder) for folder in distinct]
+    if len({run.load for run in runs}) > 1:
+        runs = [_over(run, TENSION) for run in runs]
+    names = _names(distinct)
+    labels = _labels(names, runs)
+    return [
+        replace(run, name=name, label=label)
+        for run, name, label in zip(runs, names, labels, strict=True)
+    ]
+
+
+def _read(folder: Path) -> Run:
+    about = _about(folder)
+    column = _load(about).column
+    rows: Sequence[Row]
+    special: dict[int, dict[str, str]] = {}
+    if (folder / "branches.csv").is_file():
+        rows = read_rows(folder / "branches.csv", BranchRow, column)
+        special = _special(folder / "special_points.csv")
+    elif (folder / "sweep.csv").is_file():
+        rows = read_rows(folder / "sweep.csv", quantity=column)
+    else:
+        problem = "is no run folder: it has neither a sweep.csv nor a branches.csv"
+        raise OutputError(folder, problem)
+    if not rows:
+        raise OutputError(folder, "has no rows yet: there is nothing to show")
+    return Run(folder, tuple(rows), about=about, special=special)
+
+
+def _over(run: Run, load: Load) -> Run:
+    return replace(run, rows=tuple(replace(row, quantity=load.column) for row in run.rows))
+
+
+def _about(folder: Path) -> Mapping[str, Any]:
+    try:
+        about = json.loads((folder / "run.json").read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return about if isinstance(about, dict) else {}
+
+
+def _load(about: Mapping[str, Any]) -> Load:
+    """Return the load of the film that run.json names.
+
+    A table on its own is shown over kL3_alpha, which is right for any film.
+    """
+    try:
+        return FILM_LOADS[about["spec"]["film"]["model"]]
+    except (KeyError, TypeError):
+        return SPRING_LOAD
+
+
+def _special(path: Path) -> dict[int, dict[str, str]]:
+    """Read special_points.csv, which an exploration that has met none may not have."""
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            return {int(line["number"]): dict(line) for line in csv.DictReader(file)}
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise OutputError(path, f"cannot be read: {error.strerror}") from None
+    except (KeyError, ValueError):
+        problem = "is no table of special points: no column of whole numbers `number`"
+        raise OutputError(path, problem) from None
+
+
+def _names(folders: Sequence[Path]) -> list[str]:
+    """Return the last parts of the folders' paths, as many as tell them apart."""
+    parts = [folder.resolve().parts for folder in folders]
+    for count in range(1, max((len(part) for part in parts), default=0) + 1):
+        names = ["/".join(part[-count:]) for part in parts]
+        if len(set(names)) == len(names):
+            return names
+    return []
+
+
+def _labels(names: Sequence[str], runs: Sequence[Run]) -> list[str]:
+    """Return the names, and what run.json says wherever it says different things."""
+    notes = [_notes(run.about) for run in runs]
+    told = [set(column) != {column[0]} for column in zip(*notes, strict=True)]
+    return [
+        ", ".join([name, *(text for text, tell in zip(own, told, strict=True) if tell)])
+        for name, own in zip(names, notes, strict=True)
+    ]
+
+
+def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return what run.json says of the film, of the mesh's size and of the solver."""
+    try:
+        film, solver = about["spec"]["film"]["model"], about["spec"]["solver"]["name"]
+        return film, f"{about['mesh']['vertices']} vertices", solver
+    except (KeyError, TypeError):
+        return "", "", ""

@@ -5,7 +5,9 @@ from __future__ import annotations
 import io
 import logging
 import os
+import sys
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,18 +42,21 @@ def load_matplotlib() -> None:
     """Import matplotlib; to be called before anything of it is imported.
 
     Figures here are drawn without a window, so that the backend MPLBACKEND names does not
-    matter. But matplotlib refuses to be imported if there is no such backend, and Jupyter
-    exports one that other environments do not have.
+    matter to them. But matplotlib refuses to be imported if there is no such backend, and
+    Jupyter exports one that other environments do not have. Where there is one, it stays
+    the backend of whoever opens windows beside.
     """
+    if "matplotlib" in sys.modules:
+        return
+    named = os.environ.pop("MPLBACKEND", None)
     try:
-        import matplotlib  # noqa: F401
-    except ValueError:
-        named = os.environ.pop("MPLBACKEND", None)
-        try:
-            import matplotlib  # noqa: F401
-        finally:
-            if named is not None:
-                os.environ["MPLBACKEND"] = named
+        import matplotlib
+    finally:
+        if named is not None:
+            os.environ["MPLBACKEND"] = named
+    if named:
+        with suppress(ValueError):
+            matplotlib.rcParams["backend"] = named
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -236,9 +236,15 @@ def test_displacement_from_frame_to_frame_is_proportional_to_the_step(
     )
 
 
-def test_the_child_says_nothing_without_a_display(run: Path) -> None:
-    """VTK complains that there is no X server before it finds that it needs none."""
+@pytest.mark.parametrize("notebook", [False, True])
+def test_the_child_says_nothing_without_a_display(run: Path, notebook: bool) -> None:
+    """VTK complains that there is no X server before it finds that it needs none.
+
+    Nor does it mind the matplotlib backend of a notebook, which is not there elsewhere.
+    """
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    if notebook:
+        environment["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
     command = [
         sys.executable,
         "-m",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.pictures.render.colours import PaintedFilm
 from eulerplateau.pictures.view import ASPECT, LOOP_RADIUS, UP, View
 from eulerplateau.runs import Shape
@@ -24,6 +25,8 @@ class Scene:
     """
 
     def __init__(self, width: int) -> None:
+        # First, since pyvista imports it whatever MPLBACKEND says.
+        load_matplotlib()
         import pyvista
         from vtkmodules.vtkCommonCore import vtkLogger
 

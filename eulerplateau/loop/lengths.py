@@ -1,14 +1,15 @@
-"""Bringing a loop back to its rest lengths: the constraint's Jacobian and projection."""
+"""How a loop is kept inextensible: the lengths' Jacobian, metric and projection."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
+from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.slide_kernels import solve_lengths
 
 # Gauss-Newton converges quadratically: a handful of steps from a nearby shape.
 _PROJECTION_STEPS = 30
@@ -39,45 +40,40 @@ def jacobian(loop: Loop, x_loop: FloatArray) -> FloatArray:
 class LengthMetric:
     """J M^-1 J^T (n_b, n_b), M = diag(<s>): how forces along the edges change lengths.
 
-    Each edge meets only its two neighbours, so the matrix is tridiagonal but for one
-    entry in the corner, which a rank-one term w w^T takes out, leaving what remains
-    positive semidefinite.
+    Each edge meets only its two neighbours, so that to solve with the matrix costs O(n_b)
+    (slide_kernels.py).
+
+    Attributes
+    ----------
+    directions : (n_b, d) float, e_v / s_v
+    means : (n_b,) float, <s_v>
     """
 
-    _factor: FloatArray
-    _corner: FloatArray
-    _solved_corner: FloatArray
+    directions: FloatArray
+    means: FloatArray
 
     def solve(self, rhs: FloatArray) -> FloatArray:
-        """Return (J M^-1 J^T)^-1 rhs, for rhs (n_b,) or (n_b, m)."""
-        open_chain = cho_solve_banded((self._factor, False), rhs, check_finite=False)
-        share = self._corner @ open_chain / (1 + self._corner @ self._solved_corner)
-        solution: FloatArray = open_chain - np.multiply.outer(self._solved_corner, share)
+        """Return (J M^-1 J^T)^-1 rhs, for rhs (n_b,) or (n_b, m).
+
+        Raises LinAlgError if the matrix is singular: an edge has no length, or all edges
+        lie along one line.
+        """
+        columns = np.array(rhs.T, dtype=np.float64, order="C", ndmin=2)
+        for column in columns:
+            if not solve_lengths(self.directions, self.means, column):
+                raise LinAlgError("an edge of the loop has no length, or the loop no width")
+        solution: FloatArray = columns.T.reshape(rhs.shape)
         return solution
 
 
 def length_metric(loop: Loop, x_loop: FloatArray) -> LengthMetric:
-    """Factorise J M^-1 J^T at a loop (n_b, 3); LinAlgError if an edge has no length."""
-    ease = 1 / loop.mean_lengths
-    direction = loop.chords(x_loop) / loop.rest_lengths[:, None]
-    stretch = np.linalg.norm(direction, axis=1)
-    if not stretch.all():
-        raise LinAlgError("an edge of the loop has no length")
-    banded = np.empty((2, len(ease)))
-    banded[1] = stretch**2 * (ease + np.roll(ease, -1))
-    banded[0, 1:] = -ease[1:] * (direction[:-1] * direction[1:]).sum(axis=1)
-    bend = -ease[0] * float(direction[-1] @ direction[0])
-    ratio = np.sqrt(stretch[0] / stretch[-1])
-    corner = np.zeros(len(ease))
-    corner[[0, -1]] = np.sqrt(abs(bend)) * np.array([ratio, np.copysign(1 / ratio, bend)])
-    banded[1, [0, -1]] -= corner[[0, -1]] ** 2
-    factor = cholesky_banded(banded, check_finite=False)
-    solved = cho_solve_banded((factor, False), corner, check_finite=False)
-    return LengthMetric(factor, corner, solved)
+    """Return J M^-1 J^T at a loop (n_b, d), d = 2 or 3."""
+    directions = loop.chords(x_loop) / loop.rest_lengths[:, None]
+    return LengthMetric(directions, loop.mean_lengths)
 
 
 def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
-    """Return the nearest loop (n_b, 3) that keeps its lengths, to rounding; None if lost.
+    """Return the nearest loop (n_b, d) that keeps its lengths, to rounding; None if lost.
 
     Gauss-Newton in the norm sum_v <s_v> |dx_v|^2. Next to a much longer edge, what corrects
     that one's length would throw a short one about: loops of very uneven edges keep each

@@ -1,13 +1,13 @@
-"""Motions that cost nothing: rigid ones, and a uniform loop's sliding along itself."""
+"""Motions of a loop that cost no energy: rigid ones, and its sliding along itself."""
 
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.lengths import length_metric
-from eulerplateau.loop.loop import Loop, backward_differences, differences
-from eulerplateau.loop.slide_kernels import SLIDES
+from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.slide_kernels import SLIDES, keep_lengths
 
 RIGID_MOTIONS = 6
 
@@ -38,23 +38,29 @@ def rigid_motions(x: FloatArray) -> FloatArray:
 
 
 def sliding(loop: Loop, x: FloatArray) -> FloatArray | None:
-    """Return the loop's sliding along itself (n, d), of unit size; None if it is rigid.
+    """Return the loop's sliding along itself (n, d), of unit size; None if that is rigid.
 
     A soap film does not know which piece of a uniform loop lies where: a loop that slides
     along its own curve changes nothing but how the vertices lie on it, which is to say the
     discretisation. That displacement is the tangent, made to keep all lengths (J p = 0) and
-    orthogonal to rigid motions, both in the norm sum_v <s_v> |p_v|^2. Raises LinAlgError
-    if an edge has no length.
+    orthogonal to rigid motions, both in the norm sum_v <s_v> |p_v|^2.
+
+    Parameters
+    ----------
+    x : (n, d) float
+        The loop's vertices, d = 2 in a plane or 3.
+
+    Raises
+    ------
+    LinAlgError
+        If an edge has no length.
     """
-    mass = loop.mean_lengths[:, None]
-    metric = length_metric(loop, x)
-    along = x - np.roll(x, 1, axis=0)
-    along = along / np.linalg.norm(along, axis=1)[:, None]
-    tangent = along + np.roll(along, -1, axis=0)
-    direction = differences(x) / loop.rest_lengths[:, None]
-    stretch = (direction * differences(tangent)).sum(axis=1)
-    pull = metric.solve(stretch)
-    slide = tangent + backward_differences(pull[:, None] * direction) / mass
+    chords = loop.chords(x)
+    along = chords / np.linalg.norm(chords, axis=1)[:, None]
+    slide = along + np.roll(along, 1, axis=0)
+    directions = chords / loop.rest_lengths[:, None]
+    if not keep_lengths(directions, loop.mean_lengths, slide):
+        raise LinAlgError("an edge of the loop has no length, or the loop no width")
     root = np.repeat(np.sqrt(loop.mean_lengths), x.shape[1])
     rigid = np.linalg.qr(rigid_motions(x) * root[:, None])[0]
     weighted = slide.ravel() * root
@@ -75,7 +81,15 @@ def free_motions(loop: Loop, x: FloatArray, slides: bool) -> FloatArray:
 
 
 def remove_sliding(slide: FloatArray | None, loop: Loop, forces: FloatArray) -> FloatArray:
-    """Return forces (n, d) on a loop without what would slide it along itself."""
+    """Return the forces (n, d) on a loop less their part that slides it along itself.
+
+    Parameters
+    ----------
+    slide : (n, d) float, or None
+        What `sliding` returns; None leaves the forces as they are.
+    forces : (n, d) float
+        Work per displacement of each vertex.
+    """
     if slide is None:
         return forces
     share = float(np.sum(slide * forces))

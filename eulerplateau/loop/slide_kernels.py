@@ -1,7 +1,8 @@
-"""Compiled loops of a plane loop's motions. Arrays in, arrays out.
+"""Which motions of a loop keep its edges' lengths, and which of them slide it along itself.
 
-Displacements that keep the edges' lengths, by the angles theta_v of the edges
-(plane_kernels.py). Helpers stay in this file (numba #1833).
+Compiled loops, arrays in, arrays out. `solve_lengths` and `keep_lengths` serve loops in
+space and in a plane; the others plane loops whose unknowns are the angles theta_v of their
+edges (solvers/in_plane/kernels.py). Helpers stay in this file (numba #1833).
 """
 
 from __future__ import annotations
@@ -11,49 +12,93 @@ from numba import njit
 
 from eulerplateau.arrays import FloatArray
 
-# Of a circle, sliding is a rotation. What is left of it, of 1, is a motion of its own
-# beyond this; nearer to a circle it cannot be told from the shape's modes, and stays among
-# them.
+# Threshold on the part of the sliding motion that is not a rotation, of 1. A circle's
+# sliding is a rotation. Of loops nearer to a circle, what is left of it cannot be told from
+# a change of shape, and stays among those.
 SLIDES = 0.05
 
 
 @njit(cache=True, error_model="numpy")
-def solve_lengths(units: FloatArray, means: FloatArray, rhs: FloatArray) -> None:
-    """Replace rhs (n,) by (J M^-1 J^T)^-1 rhs, J the lengths' Jacobian, M = diag(<s>).
+def solve_lengths(directions: FloatArray, means: FloatArray, rhs: FloatArray) -> bool:
+    """Replace rhs (n,) by (J M^-1 J^T)^-1 rhs; return whether that matrix is definite.
 
-    Tridiagonal but for a corner, which a rank-one term takes out (inextensible.py).
+    J is the Jacobian of the lengths (lengths.py), M = diag(<s>); directions (n, d), e_v /
+    s_v, d = 2 or 3; means (n,), <s>. Tridiagonal but for the entry in the corner, which a
+    rank-one term w w^T takes out, w (n,) having two entries: what remains is positive
+    semidefinite, is factorised without pivoting, and Sherman and Morrison put w back.
     """
-    n = len(rhs)
-    corner = -(units[n - 1, 0] * units[0, 0] + units[n - 1, 1] * units[0, 1]) / means[0]
-    root = np.sqrt(abs(corner))
-    ends = (root, np.copysign(root, corner))
-    border = np.zeros(n)
-    border[0], border[n - 1] = ends
-    pivots, ratios = np.empty(n), np.empty(n)
+    n, solid = len(rhs), directions.shape[1] == 3
+    corner = (
+        directions[n - 1, 0] * directions[0, 0] + directions[n - 1, 1] * directions[0, 1]
+    )
+    first = directions[0, 0] ** 2 + directions[0, 1] ** 2
+    last = directions[n - 1, 0] ** 2 + directions[n - 1, 1] ** 2
+    if solid:
+        corner += directions[n - 1, 2] * directions[0, 2]
+        first += directions[0, 2] ** 2
+        last += directions[n - 1, 2] ** 2
+    even, root = (first / last) ** 0.25, np.sqrt(abs(corner) / means[0])
+    start, end = root * even, np.copysign(root / even, -corner)
+    inverse, ratios, border = np.empty(n), np.empty(n), np.empty(n)
+    pivot, right, edge = 1.0, 0.0, 0.0
+    ahead = 1.0 / means[0]
     for v in range(n):
-        diagonal = 1.0 / means[v] + 1.0 / means[(v + 1) % n]
-        if v == 0 or v == n - 1:
-            diagonal -= root * root
-        if v == 0:
-            ratios[v] = 0.0
+        ease, ahead = ahead, 1.0 / means[v + 1 if v < n - 1 else 0]
+        square = directions[v, 0] ** 2 + directions[v, 1] ** 2
+        if solid:
+            square += directions[v, 2] ** 2
+        diagonal, beside, entry = square * (ease + ahead), 0.0, 0.0
+        if v > 0:
+            beside -= directions[v - 1, 0] * directions[v, 0]
+            beside -= directions[v - 1, 1] * directions[v, 1]
+            if solid:
+                beside -= directions[v - 1, 2] * directions[v, 2]
+            beside *= ease
         else:
-            dot = units[v - 1, 0] * units[v, 0] + units[v - 1, 1] * units[v, 1]
-            beside = -dot / means[v]
-            ratios[v] = beside / pivots[v - 1]
-            diagonal -= ratios[v] * beside
-            rhs[v] -= ratios[v] * rhs[v - 1]
-            border[v] -= ratios[v] * border[v - 1]
-        pivots[v] = diagonal
+            diagonal, entry = diagonal - start * start, start
+        if v == n - 1:
+            diagonal, entry = diagonal - end * end, end
+        ratio = beside / pivot
+        pivot = diagonal - ratio * beside
+        if not pivot > 0.0:
+            return False
+        right = rhs[v] - ratio * right
+        edge = entry - ratio * edge
+        inverse[v], ratios[v] = 1.0 / pivot, ratio
+        rhs[v], border[v] = right, edge
+    ratio = right = edge = 0.0
     for v in range(n - 1, -1, -1):
-        rhs[v] /= pivots[v]
-        border[v] /= pivots[v]
-        if v < n - 1:
-            rhs[v] -= ratios[v + 1] * rhs[v + 1]
-            border[v] -= ratios[v + 1] * border[v + 1]
-    share = ends[0] * rhs[0] + ends[1] * rhs[n - 1]
-    share /= 1.0 + ends[0] * border[0] + ends[1] * border[n - 1]
+        right = rhs[v] * inverse[v] - ratio * right
+        edge = border[v] * inverse[v] - ratio * edge
+        ratio = ratios[v]
+        rhs[v], border[v] = right, edge
+    share = start * rhs[0] + end * rhs[n - 1]
+    share /= 1.0 + start * border[0] + end * border[n - 1]
     for v in range(n):
         rhs[v] -= share * border[v]
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def keep_lengths(directions: FloatArray, means: FloatArray, field: FloatArray) -> bool:
+    """Replace field (n, d) by the nearest motion p that keeps all lengths: J p = 0.
+
+    In the norm sum_v <s_v> |p_v|^2. Arguments and what is returned as in `solve_lengths`.
+    """
+    n, dimension = field.shape
+    pull = np.zeros(n)
+    for d in range(dimension):
+        for v in range(n - 1):
+            pull[v] += directions[v, d] * (field[v + 1, d] - field[v, d])
+        pull[n - 1] += directions[n - 1, d] * (field[0, d] - field[n - 1, d])
+    definite = solve_lengths(directions, means, pull)
+    for d in range(dimension):
+        before = pull[n - 1] * directions[n - 1, d]
+        for v in range(n):
+            here = pull[v] * directions[v, d]
+            field[v, d] += (here - before) / means[v]
+            before = here
+    return definite
 
 
 @njit(cache=True, error_model="numpy")
@@ -69,7 +114,7 @@ def work_of(
 
 
 @njit(cache=True, error_model="numpy")
-def without_rigid(points: FloatArray, means: FloatArray, field: FloatArray) -> float:
+def remove_rigid(points: FloatArray, means: FloatArray, field: FloatArray) -> float:
     """Take rigid motions out of a field (n, 2); return what is left of it squared.
 
     Both in the norm sum_v <s_v> |p_v|^2; points (n or more, 2) are the vertices.
@@ -109,24 +154,15 @@ def slide_row(
     row . d theta = sum_v <s_v> slide_v . d x_v with motions.sliding; zero for a circle.
     """
     n = len(lengths)
-    pull, slide = np.empty(n), np.empty((n, 2))
-    whole = 0.0
+    slide = np.empty((n, 2))
     for v in range(n):
         for d in range(2):
             slide[v, d] = units[v, d] + units[v - 1, d]
+    keep_lengths(units, means, slide)
+    whole = 0.0
     for v in range(n):
-        after = (v + 1) % n
-        pull[v] = 0.0
-        for d in range(2):
-            pull[v] += units[v, d] * (slide[after, d] - slide[v, d])
-    solve_lengths(units, means, pull)
-    for v in range(n):
-        for d in range(2):
-            slide[v, d] += (pull[v] * units[v, d] - pull[v - 1] * units[v - 1, d]) / means[
-                v
-            ]
         whole += means[v] * (slide[v, 0] ** 2 + slide[v, 1] ** 2)
-    left = without_rigid(points, means, slide)
+    left = remove_rigid(points, means, slide)
     scale = 1.0 / np.sqrt(left) if left >= SLIDES**2 * whole else 0.0
     for v in range(n):
         for d in range(2):
@@ -152,7 +188,7 @@ def mass_row(
     for v in range(1, n):
         field[v, 0] = field[v - 1, 0] - lengths[v - 1] * units[v - 1, 1] * turns[v - 1]
         field[v, 1] = field[v - 1, 1] + lengths[v - 1] * units[v - 1, 0] * turns[v - 1]
-    size = without_rigid(points, means, field)
+    size = remove_rigid(points, means, field)
     for v in range(n):
         for d in range(2):
             field[v, d] *= means[v]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from eulerplateau.film.plane_energy import PlaneEnergy
 from scipy.spatial.distance import pdist, squareform
 
 from eulerplateau.arrays import FloatArray
@@ -11,7 +12,6 @@ from eulerplateau.film import follow_kernels
 from eulerplateau.film.area import area
 from eulerplateau.film.harmonic import follower
 from eulerplateau.film.plane import polygon_area
-from eulerplateau.film.plane_energy import PlaneEnergy
 from eulerplateau.loop import kernels, slide_kernels
 from eulerplateau.loop.lengths import jacobian
 from eulerplateau.loop.loop import Loop
@@ -40,7 +40,7 @@ def wavy(chain: Chain, size: float) -> FloatArray:
 
 
 def closed_point(chain: Chain) -> Point:
-    angles = chain.closed(wavy(chain, 0.1))
+    angles = chain.close(wavy(chain, 0.1))
     assert angles is not None
     return chain.at(angles)
 
@@ -133,7 +133,7 @@ def test_step_solves_the_equations_with_the_constraints(chain: Chain) -> None:
     rhs, gap = np.random.default_rng(5).standard_normal(n + 1), np.array([0.01, 0.02])
     system = np.block([[matrix, held.T], [held, np.zeros((3, 3))]])
     exact = np.linalg.solve(system, np.concatenate([rhs[:-1], -gap, [0.0]]))
-    turns, force = chain.solved(chain.factors(point, pull, 0.0), rhs, gap)
+    turns, force = chain.solve(chain.factors(point, pull, 0.0), rhs, gap)
     scale = float(np.abs(exact[:n]).max())
     np.testing.assert_allclose(turns[:-1], exact[:n], atol=1e-9 * scale)
     np.testing.assert_allclose(force, exact[n : n + 2], rtol=1e-8)

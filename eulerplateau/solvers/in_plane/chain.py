@@ -105,7 +105,7 @@ class Chain:
         )
         return Factors(self, point, gains, negative)
 
-    def solved(
+    def solve(
         self, factors: Factors, rhs: FloatArray, gap: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Return the turns (n,) under torques rhs (n,) that close a gap (2,), and the pull.
@@ -129,7 +129,7 @@ class Chain:
     def step(self, factors: Factors) -> tuple[FloatArray, FloatArray]:
         """Return Newton's turns (n,) and the pull (2,) on the chain's end after them."""
         point = factors.point
-        return self.solved(factors, -point.gradient, point.points[-1])
+        return self.solve(factors, -point.gradient, point.points[-1])
 
     def softest(
         self, factors: Factors, tries: int = _DIRECTIONS
@@ -154,7 +154,7 @@ class Chain:
             if not size > 1e-20 * before:
                 break
             basis[k], rows[k] = turns / np.sqrt(size), row / np.sqrt(size)
-            turns = self.solved(factors, rows[k], closed)[0]
+            turns = self.solve(factors, rows[k], closed)[0]
             images[k] = turns
             found = k + 1
         inverse = rows[:found] @ images[:found].T
@@ -179,7 +179,7 @@ class Chain:
             row,
         )
 
-    def closed(self, angles: FloatArray) -> FloatArray | None:
+    def close(self, angles: FloatArray) -> FloatArray | None:
         """Return the closed chain (n,) next to angles (n,); None if it does not close."""
         turned = angles.copy()
         gap = plane_kernels.close(turned, self.loop.rest_lengths, 20)

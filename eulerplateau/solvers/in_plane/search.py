@@ -12,7 +12,7 @@ from eulerplateau.loop import close_with_lengths
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
-from eulerplateau.solvers.in_plane.newton import Flat, minimum_in_plane
+from eulerplateau.solvers.in_plane.newton import PlaneEquilibrium, minimum_in_plane
 from eulerplateau.solvers.models import DenseModels
 from eulerplateau.solvers.problem import Problem
 
@@ -52,7 +52,7 @@ def search(
         models = DenseModels(film.energy(problem.loop, load))
         with threadpool_limits(1, user_api="blas"):
             state, status = Descent(models, max_iterations, shown).run(flat)
-        polygon = Flat(state.model.x, state.model.tensions, state.iteration)
+        polygon = PlaneEquilibrium(state.model.x, state.model.tensions, state.iteration)
         spectrum = state.stability or models.spectrum(state.model)
     found = problem.equilibrium(film.shape(polygon.x), polygon.multipliers, load, status)
     return with_stability(replace(found, iterations=polygon.iterations), spectrum)

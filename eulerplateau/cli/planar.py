@@ -10,6 +10,8 @@ import click
 _JSON = click.option(
     "--json", "as_json", is_flag=True, help="Print JSON, in full precision."
 )
+# What the command line calls the arguments of `planar_film`.
+_OPTIONS = {"lobes": "n", "tension": "sigma_hat"}
 
 
 @click.group()
@@ -25,7 +27,8 @@ def table(as_json: bool) -> None:
 
     from eulerplateau.exact.planar import LOBES, thresholds
 
-    rows = [asdict(thresholds(n)) for n in LOBES]
+    films = [asdict(thresholds(n)) for n in LOBES]
+    rows = [{"n": film.pop("lobes"), **film} for film in films]
     if as_json:
         click.echo(json.dumps(rows, indent=2))
         return
@@ -45,9 +48,14 @@ def shape(lobes: int, sigma_hat: float, as_json: bool) -> None:
 
     Regimes: disk (up to the buckling threshold), buckled, point-contact, line-contact.
     """
+    from eulerplateau.errors import SpecError
     from eulerplateau.exact.planar import planar_film
 
-    film = planar_film(lobes, sigma_hat)
+    try:
+        film = planar_film(lobes, sigma_hat)
+    except SpecError as error:
+        key, problem = error.args
+        raise SpecError(_OPTIONS[key], problem) from None
     names = ("energy", "area", "kappa_max", "kappa_min", "beta_hat")
     numbers = {name: getattr(film, name) for name in names}
     if as_json:

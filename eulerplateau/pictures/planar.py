@@ -120,8 +120,8 @@ def _draw_film(
     ax: Axes, film: PlanarFilm, room: tuple[float, float], width: float = 1.3
 ) -> None:
     """Draw the film in a rectangle of half sides `room`; a tip points up if n > 2."""
-    x = film.positions(np.linspace(0, 1, 1 + 240 * film.n))
-    x = np.stack([-x[:, 1], x[:, 0]], -1) if film.n > 2 else x
+    x = film.positions(np.linspace(0, 1, 1 + 240 * film.lobes))
+    x = np.stack([-x[:, 1], x[:, 0]], -1) if film.lobes > 2 else x
     ax.fill(*x.T, color=_FILM, linewidth=0)
     ax.plot(*x.T, color=_ROD, linewidth=width, solid_joinstyle="round")
     ax.set(xlim=(-room[0], room[0]), ylim=(-room[1], room[1]), aspect="equal")
@@ -136,24 +136,24 @@ def _draw_energies(ax: Axes, limits: Thresholds, high: float, colour: str) -> No
     }
     for regime, (start, end) in corners.items():
         loads = np.geomspace(start, end, 60)
-        energies = [planar_film(limits.n, load).energy for load in loads]
-        label = f"n = {limits.n}, {regime.value.replace('-', ' ')}"
+        energies = [planar_film(limits.lobes, load).energy for load in loads]
+        label = f"n = {limits.lobes}, {regime.value.replace('-', ' ')}"
         ax.plot(loads, energies, color=colour, linestyle=_STYLES[regime], label=label)
         ax.plot(start, energies[0], "o", color=colour, markersize=4)
-        _draw_inset(ax, planar_film(limits.n, sqrt(start * end)), colour)
+        _draw_inset(ax, planar_film(limits.lobes, sqrt(start * end)), colour)
 
 
 def _draw_inset(ax: Axes, film: PlanarFilm, colour: str) -> None:
     """Mark the film on its curve and draw its shape: below for n = 2, above for n = 3."""
-    ax.plot(film.sigma_hat, film.energy, "o", color=colour, markersize=5, fillstyle="none")
+    ax.plot(film.tension, film.energy, "o", color=colour, markersize=5, fillstyle="none")
     # Further off where the disk's line is close.
     distance = 2.0 if film.regime is Regime.BUCKLED else 1.55
-    height = film.energy * (distance if film.n > 2 else 1 / distance)
+    height = film.energy * (distance if film.lobes > 2 else 1 / distance)
     # Half an inset's width and height, as factors on the logarithmic axes.
     wide, high = 1.45, 1.6
-    left, below = film.sigma_hat / wide, height / high
+    left, below = film.tension / wide, height / high
     inset = ax.inset_axes(
-        (left, below, film.sigma_hat * wide - left, height * high - below),
+        (left, below, film.tension * wide - left, height * high - below),
         transform=ax.transData,
     )
     _draw_film(inset, film, (_HALF_WIDTH, _HALF_WIDTH), 0.9)

@@ -27,7 +27,7 @@ def test_table_as_json_has_every_digit_of_every_threshold() -> None:
     for row in rows:
         limits = thresholds(row["n"])
         assert row == {
-            "n": limits.n,
+            "n": limits.lobes,
             "sigma_buckling": limits.sigma_buckling,
             "sigma_contact": limits.sigma_contact,
             "sigma_line_contact": limits.sigma_line_contact,

@@ -281,9 +281,9 @@ def test_what_is_no_start_is_refused(start: FloatArray) -> None:
     [
         (1600.0, 0, 2, "harmonics"),
         (1600.0, 8, 1, "lobes"),
-        (-1.0, 8, 2, "load"),
-        (nan, 8, 2, "load"),
-        (inf, 8, 2, "load"),
+        (-1.0, 8, 2, "tension"),
+        (nan, 8, 2, "tension"),
+        (inf, 8, 2, "tension"),
     ],
 )
 def test_numbers_out_of_range_are_refused(
@@ -293,3 +293,35 @@ def test_numbers_out_of_range_are_refused(
         relax_in_plane(GOOD, load, harmonics, lobes)
     assert refused.value.key == key
     assert refused.value.exit_code == 2
+
+
+@pytest.mark.parametrize("harmonics", [7, 8, 16, 17])
+@pytest.mark.parametrize(("n", "load"), FILMS[:4])
+def test_a_start_between_two_lobes_leads_to_the_same_film(
+    n: int, load: float, harmonics: int
+) -> None:
+    """For odd numbers of harmonics as for even ones: energy, places and curvature agree."""
+    start = lobed(n, 6 * n * harmonics)
+    from_tip = relax_in_plane(start, load, harmonics, n)
+    # Half a lobe on, and turned so that the first vertex lies on the axis x > 0.
+    turned = pi / n
+    rotation = np.array(
+        [[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]]
+    )
+    between = np.roll(start, -3 * harmonics, axis=0) @ rotation
+    from_between = relax_in_plane(between, load, harmonics, n)
+    assert from_tip is not None
+    assert from_between is not None
+    assert from_between.energy == pytest.approx(from_tip.energy, rel=ROUNDING)
+    assert from_between.area == pytest.approx(from_tip.area, rel=ROUNDING)
+    assert from_between.waist == pytest.approx(from_tip.waist, abs=1e-7)
+    s = np.linspace(0, 1, 300)
+    assert np.abs(from_between.positions(s) - from_tip.positions(s)).max() < 1e-7
+    exact = planar_film(n, load)
+    closeness = 1e-4 if harmonics < 16 else 1e-6
+    assert np.abs(from_between.positions(s) - exact.positions(s)).max() < closeness
+    # What is drawn is what the tangent angle says: the curvature is its derivative.
+    h = 1e-5
+    ahead, behind = from_between.positions(s + h), from_between.positions(s - h)
+    tangent = (ahead - behind) / (2 * h)
+    assert np.linalg.norm(tangent, axis=1) == pytest.approx(1.0, abs=1e-6)

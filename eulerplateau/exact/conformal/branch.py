@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from eulerplateau.errors import EulerPlateauError
 from eulerplateau.exact.conformal.basis import Family, make_basis
 from eulerplateau.exact.conformal.equilibrium import (
     ConformalFilm,
@@ -28,7 +29,7 @@ _MOST_HARMONICS = 288
 _BETTER = 0.5  # a refinement that does not shrink the tail by this factor is dropped
 
 
-class BranchError(RuntimeError):
+class BranchError(EulerPlateauError):
     """A branch could not be followed to where the caller wants it."""
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import isfinite, pi
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from scipy.optimize import root
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
+from eulerplateau.exact.checks import finite
 from eulerplateau.exact.planar import thresholds
 
 # kappa'(0), the tangent's angle at the crossing and beta without a film: where Newton's
@@ -65,8 +66,8 @@ def flat_eight(load: float) -> FlatEight:
     There its crossing angle closes: the lobes are those of the planar film with two lobes
     at the onset of line contact.
     """
-    most = thresholds(2).sigma_line_contact
-    if not (isfinite(load) and 0 <= load < most):
+    most, load = thresholds(2).sigma_line_contact, finite("load", load)
+    if not load < most:
         raise SpecError("load", f"found {load}; should be from 0 to below {most:.2f}")
     slope, angle, beta = _solve(load, _start(int(load // _STEP)))
     end = _integrate(load, (slope, angle, beta)).y[:, -1]

@@ -40,7 +40,7 @@ _TRUST = 0.5
 _SAME = 1e-6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ConformalFilm:
     """A film in equilibrium. Lengths in L, energies in alpha/L.
 
@@ -67,6 +67,13 @@ class ConformalFilm:
     bending: float
     residual: float
     corrections: int
+
+    def __repr__(self) -> str:
+        numbers = f"energy={self.energy:.10g}, area={self.area:.10g}"
+        return (
+            f"ConformalFilm({self.basis.family.name}, load={self.load:.10g}, {numbers}, "
+            f"harmonics={self.basis.harmonics}, residual={self.residual:.1e})"
+        )
 
     @property
     def curve(self) -> Curve:

@@ -1,4 +1,4 @@
-"""From a start to the film of least energy: Newton's method on shape and grid, downhill.
+"""The true film of least energy downhill from a start, by Newton on its shape and grid.
 
 The loop's size is free: F = l b + sigma_hat D / l^2 is the energy of the loop of length 1
 of its shape. So there is no constraint, and a step is a linear solve. The grid's nome is an
@@ -12,10 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.linalg import eigh
+from numpy.typing import ArrayLike
 from scipy.linalg.lapack import dposv
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
+from eulerplateau.exact.checks import finite, points, whole_number
 from eulerplateau.exact.conformal.basis import Basis
 from eulerplateau.exact.conformal.equilibrium import ConformalFilm
 from eulerplateau.exact.conformal.kernels import loop_derivatives, loop_energy
@@ -61,32 +63,46 @@ class _State:
 
 
 def relax(
-    start: FloatArray, load: float, harmonics: int, lobes: int = 2
+    start: ArrayLike, tension: float, harmonics: int, lobes: int = 2
 ) -> ConformalFilm | None:
     """Return the film of least energy downhill from a start, or None if none is reached.
 
-    start : (points, 3), the loop's vertices equidistant in arc length or any other
-    parameter, more than two for each of the harmonics; of any size. It must have `lobes`
-    lobes alike, the first vertex at a tip on the axis x > 0 (the half-turns of sector.py),
-    which the film keeps: it is a minimum among films that have them. Two lobes lie along x
-    afterwards.
+    It keeps the start's symmetry, and is a minimum among films that have it; two lobes lie
+    along x afterwards. A start with corners is rounded off until the way down shows no bend
+    too sharp for the grid; if none helps, more harmonics may.
 
     None too if the film of two lobes pinches on its way down: where the strands of its
     waist come closer than harmonics resolve, no disk spans what is between them.
 
-    A start with corners is rounded off until the way down shows no bend too sharp for the
-    grid; if none helps, more harmonics may.
+    Parameters
+    ----------
+    start : (points, 3) float
+        The loop's vertices, of any size, equidistant in arc length or any other parameter;
+        more than two for each of the harmonics. It must have `lobes` lobes alike, the first
+        vertex at a tip on the axis x > 0 (the half-turns of sector.py).
+    tension : float
+        sigma_hat = sigma L^3 / alpha, finite and not negative.
+    harmonics : int
+        4 or more, of the whole loop.
+    lobes : int
+        n >= 2.
 
-    Raises SpecError for too few harmonics or points, or a start without the symmetry.
+    Raises
+    ------
+    SpecError
+        For numbers out of range or too few points, and for a start without the symmetry.
     """
-    if len(start) <= 2 * harmonics:
+    harmonics = whole_number("harmonics", harmonics, 4)
+    lobes, load = whole_number("lobes", lobes, 2), finite("tension", tension)
+    x = points("start", start, (3,))
+    if len(x) <= 2 * harmonics:
         should = f"should have more than {2 * harmonics}, two for each of the harmonics"
-        raise SpecError("start", f"found {len(start)} points; {should}")
+        raise SpecError("start", f"found {len(x)} points; {should}")
     levels = [harmonics]
     while levels[0] >= _FEWEST * _FINER:
         levels.insert(0, -(-levels[0] // _FINER))
     sectors = [make_sector(level, lobes) for level in levels]
-    c = sectors[0].project(start)
+    c = sectors[0].project(x)
     damping = sectors[0].k ** 2 - 1
     for corners in _CORNERS:
         film = _through(sectors, c * np.exp(-corners * damping), load)

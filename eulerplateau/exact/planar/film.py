@@ -1,18 +1,17 @@
-"""Planar films: the equilibria with n lobes at any surface tension."""
+"""The exact planar film with n lobes at any tension, disk to line contact."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
-from math import isfinite, pi
-from operator import index
+from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.errors import SpecError
+from eulerplateau.exact.checks import finite, whole_number
 from eulerplateau.exact.planar.buckled import buckled, excess, sigma_buckling
 from eulerplateau.exact.planar.contact import (
     Touching,
@@ -45,31 +44,41 @@ class Regime(Enum):
 class Thresholds:
     """The loads sigma L^3 / alpha at which the n-lobed film changes its regime."""
 
-    n: int
+    lobes: int
     sigma_buckling: float
     sigma_contact: float
     sigma_line_contact: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PlanarFilm:
     """The planar equilibrium with n lobes, loop of length 1. Energies in alpha/L.
 
-    energy = sigma_hat * area + the integral of kappa^2 over the loop: no 1/2.
+    energy = tension * area + the integral of kappa^2 over the loop: no 1/2.
     The arc length t runs from 0 to 1 (outside, only the tangent angle is not periodic),
     counter-clockwise, from the tip of a lobe on the positive x axis; kappa > 0 where the
     loop is convex; the centre of symmetry is the origin.
 
     Attributes
     ----------
-    beta_hat :
-        The multiplier of length in 2 kappa'' + kappa^3 - beta_hat kappa - sigma_hat = 0.
-    contact_length :
-        Length of the line along which each lobe's sides touch.
+    lobes : int
+        n.
+    tension : float
+        sigma_hat = sigma L^3 / alpha.
+    area : float
+        In L^2.
+    kappa_max, kappa_min : float
+        The loop's curvature at the lobes' tips, and where it is least; in 1/L.
+    beta_hat : float
+        The multiplier of length in 2 kappa'' + kappa^3 - beta_hat kappa - tension = 0.
+    contact_length : float
+        Length of the line along which each lobe's sides touch; 0 without line contact.
+    half_lobe : HalfLobe
+        The loop from a tip to the middle between two lobes.
     """
 
-    n: int
-    sigma_hat: float
+    lobes: int
+    tension: float
     regime: Regime
     energy: float
     area: float
@@ -78,6 +87,13 @@ class PlanarFilm:
     beta_hat: float
     contact_length: float
     half_lobe: HalfLobe
+
+    def __repr__(self) -> str:
+        numbers = f"energy={self.energy:.10g}, area={self.area:.10g}"
+        return (
+            f"PlanarFilm(lobes={self.lobes}, tension={self.tension:.10g}, "
+            f"{self.regime.value}, {numbers})"
+        )
 
     def curvature(self, t: ArrayLike) -> FloatArray:
         """Return kappa at the arc lengths `t`, any shape."""
@@ -95,11 +111,11 @@ class PlanarFilm:
         """Return curvature, tangent angle and positions at the arc lengths `t`."""
         t = np.asarray(t, dtype=np.float64)
         shape, t = t.shape, t.ravel()
-        lobe = np.floor(t * self.n + 0.5)
-        s = t - lobe / self.n
+        lobe = np.floor(t * self.lobes + 0.5)
+        s = t - lobe / self.lobes
         side = np.where(s < 0, -1.0, 1.0)
-        half = self.half_lobe.at(np.minimum(np.abs(s), 1 / (2 * self.n)))
-        turned = 2 * pi * lobe / self.n
+        half = self.half_lobe.at(np.minimum(np.abs(s), 1 / (2 * self.lobes)))
+        turned = 2 * pi * lobe / self.lobes
         angle = pi / 2 + turned + side * (half.angle - pi / 2)
         x, y = half.x[..., 0], side * half.x[..., 1]
         cosine, sine = np.cos(turned), np.sin(turned)
@@ -109,110 +125,132 @@ class PlanarFilm:
         )
 
 
-def thresholds(n: int) -> Thresholds:
-    """Return the thresholds of the n-lobed film (paper, tab:contact, to 12 digits or more).
+def thresholds(lobes: int) -> Thresholds:
+    """Return the thresholds of the film with n lobes (paper, tab:contact).
 
-    Raises SpecError if n is not one of 2 ... 12.
+    Parameters
+    ----------
+    lobes : int
+        n, from 2 to 12.
+
+    Returns
+    -------
+    Thresholds
+        Tensions sigma L^3 / alpha, to 12 digits or more.
+
+    Raises
+    ------
+    SpecError
+        If `lobes` is no such number.
     """
-    return _thresholds(_checked_lobes(n))
+    return _thresholds(_checked_lobes(lobes))
 
 
-def planar_film(n: int, sigma_hat: float) -> PlanarFilm:
-    """Return the planar equilibrium with n lobes at sigma_hat = sigma L^3 / alpha.
+def planar_film(lobes: int, tension: float) -> PlanarFilm:
+    """Return the planar equilibrium with n lobes, by elliptic functions (docs/planar.md).
 
-    Up to the buckling threshold that is the disk. Raises SpecError if n is not one of
-    2 ... 12 or sigma_hat is negative or not finite.
+    Up to the buckling threshold that is the disk; beyond the contact threshold the loop
+    touches itself. Correct to about 13 digits.
+
+    Parameters
+    ----------
+    lobes : int
+        n, from 2 to 12.
+    tension : float
+        sigma_hat = sigma L^3 / alpha, finite and not negative.
+
+    Returns
+    -------
+    PlanarFilm
+        Its loop has length 1, its energies are in alpha/L.
+
+    Raises
+    ------
+    SpecError
+        If an argument is no such number.
     """
-    n, sigma_hat = _checked_lobes(n), float(sigma_hat)
-    if not (isfinite(sigma_hat) and sigma_hat >= 0):
-        raise SpecError(
-            "sigma_hat", f"found {sigma_hat}; should be finite and not negative"
-        )
-    limits = _thresholds(n)
-    if excess(n, sigma_hat) <= 0:
-        return _disk(n, sigma_hat)
-    if sigma_hat < limits.sigma_contact:
-        return _buckled(n, sigma_hat)
-    if sigma_hat < limits.sigma_line_contact:
-        return _touching(n, sigma_hat, Regime.POINT_CONTACT, touching_at(n, sigma_hat))
-    size = (limits.sigma_line_contact / sigma_hat) ** (1 / 3)
-    parts = at_line_contact(n).scaled(size)
-    return _touching(n, sigma_hat, Regime.LINE_CONTACT, parts)
+    lobes, tension = _checked_lobes(lobes), finite("tension", tension)
+    limits = _thresholds(lobes)
+    if excess(lobes, tension) <= 0:
+        return _disk(lobes, tension)
+    if tension < limits.sigma_contact:
+        return _buckled(lobes, tension)
+    if tension < limits.sigma_line_contact:
+        return _touching(lobes, tension, Regime.POINT_CONTACT, touching_at(lobes, tension))
+    size = (limits.sigma_line_contact / tension) ** (1 / 3)
+    parts = at_line_contact(lobes).scaled(size)
+    return _touching(lobes, tension, Regime.LINE_CONTACT, parts)
 
 
 @cache
-def _thresholds(n: int) -> Thresholds:
-    contact = touching(n, first_contact_phase(n)).lobe.sigma
-    return Thresholds(n, sigma_buckling(n), contact, at_line_contact(n).lobe.sigma)
-
-
-def _checked_lobes(n: int) -> int:
-    try:
-        lobes = index(n)
-    except TypeError:
-        lobes = 0
-    if lobes not in LOBES:
-        raise SpecError("n", f"found {n!r}; should be a whole number from 2 to {LOBES[-1]}")
-    return lobes
-
-
-def _disk(n: int, sigma_hat: float) -> PlanarFilm:
-    area, kappa = 1 / (4 * pi), 2 * pi
-    return PlanarFilm(
-        n=n,
-        sigma_hat=sigma_hat,
-        regime=Regime.DISK,
-        energy=sigma_hat * area + kappa**2,
-        area=area,
-        kappa_max=kappa,
-        kappa_min=kappa,
-        beta_hat=kappa**2 - sigma_hat / kappa,
-        contact_length=0.0,
-        half_lobe=CircleHalf(n),
+def _thresholds(lobes: int) -> Thresholds:
+    contact = touching(lobes, first_contact_phase(lobes)).lobe.sigma
+    return Thresholds(
+        lobes, sigma_buckling(lobes), contact, at_line_contact(lobes).lobe.sigma
     )
 
 
-def _buckled(n: int, sigma_hat: float) -> PlanarFilm:
-    lobe = touching(n, first_contact_phase(n)).lobe
-    shape = buckled(n, sigma_hat, 0.9 * lobe.imaginary2 / lobe.mean**2)
-    energy = 2 * n * shape.energy(shape.half_period)
+def _checked_lobes(lobes: int) -> int:
+    return whole_number("lobes", lobes, LOBES[0], LOBES[-1])
+
+
+def _disk(lobes: int, tension: float) -> PlanarFilm:
+    area, kappa = 1 / (4 * pi), 2 * pi
     return PlanarFilm(
-        n=n,
-        sigma_hat=sigma_hat,
+        lobes=lobes,
+        tension=tension,
+        regime=Regime.DISK,
+        energy=tension * area + kappa**2,
+        area=area,
+        kappa_max=kappa,
+        kappa_min=kappa,
+        beta_hat=kappa**2 - tension / kappa,
+        contact_length=0.0,
+        half_lobe=CircleHalf(lobes),
+    )
+
+
+def _buckled(lobes: int, tension: float) -> PlanarFilm:
+    lobe = touching(lobes, first_contact_phase(lobes)).lobe
+    shape = buckled(lobes, tension, 0.9 * lobe.imaginary2 / lobe.mean**2)
+    energy = 2 * lobes * shape.energy(shape.half_period)
+    return PlanarFilm(
+        lobes=lobes,
+        tension=tension,
         regime=Regime.BUCKLED,
         energy=energy,
-        area=(energy - shape.beta) / (3 * sigma_hat),
+        area=(energy - shape.beta) / (3 * tension),
         kappa_max=shape.mean + shape.amplitude,
         kappa_min=shape.mean - shape.amplitude,
         beta_hat=shape.beta,
         contact_length=0.0,
-        half_lobe=BuckledHalf(n, shape),
+        half_lobe=BuckledHalf(lobes, shape),
     )
 
 
-def _touching(n: int, sigma_hat: float, regime: Regime, parts: Touching) -> PlanarFilm:
+def _touching(lobes: int, tension: float, regime: Regime, parts: Touching) -> PlanarFilm:
     """Return the film with the given curved parts and lines between them."""
     lobe, neck = parts.lobe, parts.neck
-    energy = 2 * n * lobe.energy(parts.lobe_length)
+    energy = 2 * lobes * lobe.energy(parts.lobe_length)
     lowest = lobe.mean - lobe.amplitude
     if parts.lobe_length < lobe.half_period:
         lowest = float(lobe.curvature(parts.lobe_length))
     if neck is not None:
         inner = neck.half_period - parts.neck_length
-        energy += 2 * n * (neck.energy(neck.half_period) - neck.energy(inner))
+        energy += 2 * lobes * (neck.energy(neck.half_period) - neck.energy(inner))
         lowest = min(lowest, neck.mean - neck.amplitude)
     beta, line = lobe.beta, 0.0
     if regime is Regime.LINE_CONTACT:
-        beta, line = 0.0, 1 / (2 * n) - parts.lobe_length - parts.neck_length
+        beta, line = 0.0, 1 / (2 * lobes) - parts.lobe_length - parts.neck_length
     return PlanarFilm(
-        n=n,
-        sigma_hat=sigma_hat,
+        lobes=lobes,
+        tension=tension,
         regime=regime,
         energy=energy,
-        area=(energy - beta) / (3 * sigma_hat),
+        area=(energy - beta) / (3 * tension),
         kappa_max=lobe.mean + lobe.amplitude,
         kappa_min=lowest,
         beta_hat=beta,
         contact_length=line,
-        half_lobe=TouchingHalf(n, parts, line),
+        half_lobe=TouchingHalf(lobes, parts, line),
     )

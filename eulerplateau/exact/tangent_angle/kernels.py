@@ -1,7 +1,8 @@
-"""Compiled loops of tangent_angle.py. Arrays in, arrays out.
+"""How a lobe's tangent angle goes downhill to its minimum: compiled (relaxation.py).
 
-A loop is the angle phi(s) = sum_k c_k sin(2 pi n k s), k = 1 ... m, by which its tangent
-turns beyond a circle's. Its film follows from the real Fourier coefficients of e^{i phi},
+Arrays in, arrays out. A loop is the angle phi(s) = sum_k c_k sin(2 pi n k s), k = 1 ... m,
+by which its tangent turns beyond a circle's. Its film follows from the real Fourier
+coefficients of e^{i phi},
 
     a_l = (1/P) sum_j cos(phi_j - 2 pi n l s_j),  s_j = (j + 1/2) / (2 n P),  0 <= j < P,
     A = sum_l w_l a_l^2,  w_l = 1 / (4 pi (1 + n l)),  |l| < P,

@@ -1,21 +1,23 @@
-"""Films kept in their plane, by the tangent angle of a loop with n lobes alike.
+"""The film of least energy in its plane downhill from a start, without contact.
 
-theta(s) = pi/2 + 2 pi s + phi(s), phi(s) = sum_k c_k sin(2 pi n k s): such a loop keeps its
-length and, for n >= 2, closes, whatever its c_k; nothing is left to be held. In the plane
-the film is its loop's area, which the Fourier coefficients of e^{i phi} give, with all
-derivatives (tangent_angle_kernels.py). Everything converges exponentially in the number of
-harmonics.
+It is found by the tangent angle of a loop with n lobes alike, theta(s) = pi/2 + 2 pi s +
+phi(s), phi(s) = sum_k c_k sin(2 pi n k s): such a loop keeps its length and, for n >= 2,
+closes, whatever its c_k; nothing is left to be held. In the plane the film is its loop's
+area, which the Fourier coefficients of e^{i phi} give, with all derivatives (kernels.py).
+Everything converges exponentially in the number of harmonics.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite, pi
+from math import pi
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
+from eulerplateau.exact.checks import finite, points, whole_number
 from eulerplateau.exact.tangent_angle.kernels import MORE_POINTS, descend, waist
 from eulerplateau.exact.tangent_angle.start_kernels import polygon_angle, project
 
@@ -24,12 +26,13 @@ from eulerplateau.exact.tangent_angle.start_kernels import polygon_angle, projec
 _ASYMMETRY, _ROUND = 1e-2, 1e-4
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PlaneLoop:
     """A loop of length 1 with its film, least in energy among those with its symmetry.
 
     Arc length s counts counter-clockwise from the tip of a lobe on the axis x > 0; the
-    origin is the centre. Energies are in alpha/L, energy = bending + load * area.
+    origin is the centre. Energies are in alpha/L, energy = bending + tension * area,
+    tension = sigma_hat = sigma L^3 / alpha.
 
     Attributes
     ----------
@@ -38,7 +41,7 @@ class PlaneLoop:
     series : (2 P - 1,) float
         The Fourier coefficients a_l of e^{i phi}, the middle one being a_0.
     beta : float
-        The multiplier of length, in 2 kappa'' + kappa^3 - beta kappa - load = 0.
+        The multiplier of length, in 2 kappa'' + kappa^3 - beta kappa - tension = 0.
     waist : float
         The width left between the strands at a lobe's neck, where beyond its widest place
         they run along its axis; of two lobes always in the middle. Without a neck, the
@@ -53,7 +56,7 @@ class PlaneLoop:
     lobes: int
     coefficients: FloatArray
     series: FloatArray
-    load: float
+    tension: float
     energy: float
     area: float
     bending: float
@@ -62,48 +65,62 @@ class PlaneLoop:
     residual: float
     steps: int
 
-    def positions(self, s: FloatArray) -> FloatArray:
-        """Return the positions (points, 2) at the arc lengths s (points,)."""
+    def __repr__(self) -> str:
+        numbers = (
+            f"energy={self.energy:.10g}, area={self.area:.10g}, waist={self.waist:.6g}"
+        )
+        return f"PlaneLoop(lobes={self.lobes}, tension={self.tension:.10g}, {numbers})"
+
+    def positions(self, s: ArrayLike) -> FloatArray:
+        """Return the positions (..., 2) at the arc lengths s (...)."""
         last = len(self.series) // 2
         wave = 2 * pi * (1 + self.lobes * np.arange(-last, last + 1))
-        angle = np.multiply.outer(s, wave)
+        angle = np.multiply.outer(np.asarray(s, dtype=np.float64), wave)
         each = self.series / wave
         return np.stack([np.cos(angle) @ each, np.sin(angle) @ each], axis=-1)
 
-    def curvature(self, s: FloatArray) -> FloatArray:
-        """Return kappa (points,) at the arc lengths s (points,), > 0 where convex."""
+    def curvature(self, s: ArrayLike) -> FloatArray:
+        """Return kappa (...) at the arc lengths s (...), > 0 where convex."""
         wave = 2 * pi * self.lobes * np.arange(1, len(self.coefficients) + 1)
-        bends: FloatArray = np.cos(np.multiply.outer(s, wave)) @ (wave * self.coefficients)
+        angle = np.multiply.outer(np.asarray(s, dtype=np.float64), wave)
+        bends: FloatArray = np.cos(angle) @ (wave * self.coefficients)
         return 2 * pi + bends
 
 
 def relax_in_plane(
-    start: FloatArray, load: float, harmonics: int, lobes: int = 2
+    start: ArrayLike, tension: float, harmonics: int, lobes: int = 2
 ) -> PlaneLoop | None:
     """Return the film in its plane of least energy downhill from a start.
 
-    start : (points, 2 or 3), z = 0: the vertices of a closed polygon, counter-clockwise, of
-    any size and spacing; more than two for each harmonic of each lobe. It has `lobes` lobes
-    alike, each with a mirror, the first vertex at a tip on the axis x > 0, or between two
-    lobes; the film keeps that symmetry, and is a minimum among films that have it.
-    load : sigma_hat = sigma L^3 / alpha. harmonics : m, of a lobe.
+    It is a minimum among films with the start's symmetry, found by Newton's method
+    (kernels.py). None if no minimum is reached, or if its strands cross, as they do beyond
+    the tension of contact; `planar_film` has the films that touch.
 
-    None if no minimum is reached, or if its strands cross, as they do beyond the load of
-    contact; `planar.planar_film` has the films that touch.
+    Parameters
+    ----------
+    start : (points, 2 or 3) float
+        Vertices of a closed polygon, counter-clockwise, of any size and spacing, z = 0;
+        more than two for each harmonic of each lobe. It has `lobes` lobes alike, each with
+        a mirror, the first vertex at a tip on the axis x > 0, or between two lobes.
+    tension : float
+        sigma_hat = sigma L^3 / alpha, finite and not negative.
+    harmonics : int
+        m >= 1, of a lobe's tangent angle.
+    lobes : int
+        n >= 2.
 
-    Raises SpecError for numbers out of range, and for a start that is no such polygon.
+    Raises
+    ------
+    SpecError
+        For numbers out of range, and for a start that is no such polygon.
     """
-    if harmonics < 1:
-        raise SpecError("harmonics", f"found {harmonics}; should be 1 or more")
-    if lobes < 2:
-        raise SpecError("lobes", f"found {lobes}; should be 2 or more")
-    if not (isfinite(load) and load >= 0):
-        raise SpecError("load", f"found {load}; should be finite and not negative")
-    load = float(load)
+    harmonics = whole_number("harmonics", harmonics, 1)
+    lobes = whole_number("lobes", lobes, 2)
+    tension = finite("tension", tension)
     c = _projected(_checked(start, 2 * lobes * harmonics), lobes, harmonics)
     half = harmonics + MORE_POINTS
     a = np.empty(2 * half + 4 * harmonics - 1)
-    bending, area, residual, steps, found = descend(c, lobes, load, a)
+    bending, area, residual, steps, found = descend(c, lobes, tension, a)
     if not found:
         return None
     if c[0] < 0.0:
@@ -117,27 +134,23 @@ def relax_in_plane(
         lobes=lobes,
         coefficients=c,
         series=a[2 * harmonics : -2 * harmonics],
-        load=load,
-        energy=bending + load * area,
+        tension=tension,
+        energy=bending + tension * area,
         area=area,
         bending=bending,
-        beta=bending - 2 * load * area,
+        beta=bending - 2 * tension * area,
         waist=width,
         residual=residual,
         steps=steps,
     )
 
 
-def _checked(start: FloatArray, fewest: int) -> FloatArray:
+def _checked(start: ArrayLike, fewest: int) -> FloatArray:
     """Return the vertices, contiguous, of a polygon in its plane; see relax_in_plane."""
-    x = np.ascontiguousarray(start, dtype=np.float64)
-    if x.ndim != 2 or x.shape[1] not in (2, 3):
-        raise SpecError("start", f"found shape {x.shape}; should be (points, 2 or 3)")
+    x = points("start", start, (2, 3))
     if len(x) <= fewest:
         should = f"should have more than {fewest}, two for each harmonic of each lobe"
         raise SpecError("start", f"found {len(x)} points; {should}")
-    if not np.isfinite(x).all():
-        raise SpecError("start", "has coordinates that are not finite; all should be")
     if x.shape[1] == 3 and x[:, 2].any():
         raise SpecError("start", "leaves the plane z = 0; should lie in it")
     return x

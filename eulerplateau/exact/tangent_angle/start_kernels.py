@@ -1,4 +1,4 @@
-"""Compiled loops that read a lobe's angle phi off a polygon; see tangent_angle.py."""
+"""How a lobe's angle phi is read off a polygon: compiled loops (relaxation.py)."""
 
 from __future__ import annotations
 

@@ -189,9 +189,9 @@ def shape_error(lengths: FloatArray, loop: FloatArray, exact: PlanarFilm) -> flo
         return _distance_up_to_motion(loop, target, weights)
 
     # The exact loop has a mirror and n equal lobes: half a lobe would do.
-    first = np.linspace(0, 1 / exact.n, 24, endpoint=False)
+    first = np.linspace(0, 1 / exact.lobes, 24, endpoint=False)
     nearest = first[np.argmin([distance(phase) for phase in first])]
-    width = 1 / (24 * exact.n)
+    width = 1 / (24 * exact.lobes)
     found = minimize_scalar(
         distance,
         bounds=(nearest - width, nearest + width),

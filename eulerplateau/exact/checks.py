@@ -44,15 +44,11 @@ def points(name: str, value: ArrayLike, dimensions: tuple[int, ...]) -> FloatArr
     wanted = f"(points, {' or '.join(map(str, dimensions))})"
     try:
         given = np.asarray(value)
-        x = (
-            np.ascontiguousarray(given, dtype=np.float64)
-            if given.dtype.kind in "fiu"
-            else None
-        )
     except ValueError:  # rows of different lengths
-        x = None
-    if x is None:
+        given = np.asarray(None)
+    if given.dtype.kind not in "fiu":
         raise SpecError(name, f"is no array of real numbers; should be one {wanted}")
+    x = np.ascontiguousarray(given, dtype=np.float64)
     if x.ndim != 2 or x.shape[1] not in dimensions:
         raise SpecError(name, f"found shape {x.shape}; should be {wanted}")
     if not np.isfinite(x).all():

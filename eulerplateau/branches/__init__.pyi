@@ -9,6 +9,7 @@ from .films import (
     FilmFamily as FilmFamily,
     FilmPoint as FilmPoint,
     equilibrium as equilibrium,
+    equilibrium_near as equilibrium_near,
     explore as explore,
     film_point as film_point,
     first_equilibrium as first_equilibrium,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import count
 
@@ -67,9 +67,15 @@ class _Lead:
 def explore_from(
     start: BranchPoint, control: StepControl, limits: Limits
 ) -> Iterator[DiagramPoint]:
-    """Yield the points of the branch through `start`, then of those that leave it."""
+    """Yield the points of the branch through `start`, then of those that leave it.
+
+    From a start inside the window the branch is followed upwards, and then downwards.
+    """
     order = count()
     leads = [_Lead(0, next(order), start, None)]
+    if start.value > control.window[0]:
+        back = replace(start, direction=start.direction.reversed())
+        leads.append(_Lead(0, next(order), back, None))
     found: list[SpecialPoint] = []
     for branch in count():
         if not leads:

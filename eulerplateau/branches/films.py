@@ -7,9 +7,17 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
 
+import numpy as np
+
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
-from eulerplateau.branches.point import BranchPoint, StepControl, first_point
+from eulerplateau.branches.point import (
+    BranchPoint,
+    Direction,
+    StepControl,
+    correct,
+    first_point,
+)
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import LoopEnergy
@@ -106,6 +114,21 @@ def film_point(found: Equilibrium, problem: Problem, control: StepControl) -> Br
     return first_point(FilmFamily(problem, film), x_loop, found.load, control)
 
 
+def equilibrium_near(problem: Problem, shape: Shape, load: float) -> Equilibrium:
+    """Return the equilibrium next to a shape at a load, stable or not.
+
+    Raises SpecError where Newton's method comes to none.
+    """
+    film = problem.film.of_loop(problem.film.prepared(shape))
+    family, x_loop = FilmFamily(problem, film), film.project(shape.x_loop)
+    control = StepControl(window=(load, load), unit=max(load, 1.0))
+    at_this_load = Direction(np.zeros_like(x_loop), control.unit)
+    found = correct(family, x_loop, load, at_this_load, control)
+    if found is None:
+        raise SpecError("start", f"no equilibrium is next to it at the load {load:g}")
+    return equilibrium(found)
+
+
 def first_equilibrium(
     problem: Problem, load: float, start: Shape | None = None
 ) -> Equilibrium:
@@ -139,7 +162,7 @@ def explore(
     Parameters
     ----------
     window : (low, high), loads, 0 < low < high
-    start : an equilibrium in the window
+    start : an equilibrium in the window, from which branches go both ways
         By default the minimum that the rest shape leads to at the lowest load.
     special_points : int
         New branches are followed from the first so many special points.

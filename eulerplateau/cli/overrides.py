@@ -27,9 +27,10 @@ def load_with(path: Path, overrides: dict[str, Any]) -> RunSpec:
     """Read a run specification with keys replaced as on the command line."""
     from eulerplateau.runs import load_run
 
-    if "mesh.file" in overrides:
-        # Given on the command line, so relative to where the command was given.
-        overrides = {**overrides, "mesh.file": str(Path(overrides["mesh.file"]).absolute())}
+    for key in ("mesh.file", "start.file"):
+        if key in overrides:
+            # Given on the command line, so relative to where the command was given.
+            overrides = {**overrides, key: str(Path(overrides[key]).absolute())}
     return load_run(path, overrides)
 
 

@@ -7,6 +7,7 @@ file; `files` turns that into the project's errors.
 from __future__ import annotations
 
 import io
+import logging
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
@@ -19,13 +20,21 @@ from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
 from eulerplateau.mesh.vtp import read_vtp, vtp_content
 
+_log = logging.getLogger(__name__)
+
 Reader = Callable[[Path], tuple[NDArray[Any], NDArray[Any]]]
 Writer = Callable[[Path, FloatArray, IntArray], None]
 
 
 def read_polygons(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Read VTK's XML polygons."""
+    """Read VTK's XML polygons; warn if they are a shape that a run has written."""
     found = read_vtp(path)
+    if found.field_data.keys() >= {"step", "kL3_alpha"}:
+        _log.warning(
+            "%s is a shape of a run: as a mesh its deformed film becomes the rest state; "
+            "to start from it keep the run's mesh and set start.file",
+            path,
+        )
     return found.points, found.triangles
 
 

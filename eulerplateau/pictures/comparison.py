@@ -33,7 +33,7 @@ from eulerplateau.pictures.panels import (
 )
 from eulerplateau.pictures.vector_film import draw_film, room
 from eulerplateau.pictures.view import common_view
-from eulerplateau.runs import Row, Run, Shape, is_planar, read_shape
+from eulerplateau.runs import Row, Run, StoredShape, is_planar, read_shape
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -178,7 +178,7 @@ def _shown(run: Run, steps: Sequence[int] | None) -> list[Row]:
 class _Films:
     """Shapes in lines, each with the number of its run, and how they are seen."""
 
-    lines: list[tuple[int, Sequence[tuple[Row, Shape]]]]
+    lines: list[tuple[int, Sequence[tuple[Row, StoredShape]]]]
     eye: FloatArray
     half: tuple[float, float]
 
@@ -208,8 +208,8 @@ def _films(runs: Sequence[Run], shown: Sequence[Sequence[Row]]) -> _Films:
 
 
 def _lines(
-    shapes: Sequence[tuple[Row, Shape]],
-) -> list[Sequence[tuple[Row, Shape]]]:
+    shapes: Sequence[tuple[Row, StoredShape]],
+) -> list[Sequence[tuple[Row, StoredShape]]]:
     """Break the shapes of a run into lines of nearly equal length."""
     count = max(-(-len(shapes) // _PER_LINE), 1)
     length = max(-(-len(shapes) // count), 1)

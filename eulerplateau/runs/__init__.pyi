@@ -10,8 +10,8 @@ from .series import (
     signed_twists as signed_twists,
 )
 from .shape_files import (
-    Shape as Shape,
     ShapeSequence as ShapeSequence,
+    StoredShape as StoredShape,
     read_shape as read_shape,
 )
 from .spec import RunSpec as RunSpec, load_run as load_run

@@ -11,14 +11,20 @@ from pathlib import Path
 from typing import Any
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches import FilmPoint, SpecialPoint, explore, first_equilibrium
+from eulerplateau.branches import (
+    FilmPoint,
+    SpecialPoint,
+    equilibrium_near,
+    explore,
+    first_equilibrium,
+)
 from eulerplateau.errors import SpecError
-from eulerplateau.mesh import write_whole
+from eulerplateau.mesh import DiskMesh, write_whole
 from eulerplateau.runs.recording import make_mesh, recording
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.sweep import start_shape
+from eulerplateau.runs.sweep import start_shape, stored_start
 from eulerplateau.runs.table import BranchRow
-from eulerplateau.solvers import Problem
+from eulerplateau.solvers import Equilibrium, Problem
 
 SPECIAL_COLUMNS = (
     "number", "kind", "kL3_alpha", "kL3_alpha_error", "sigma_hat", "sigma_hat_error",
@@ -47,7 +53,8 @@ def run_branches(
 ) -> Exploration:
     """Explore the branches of `spec` into the folder `path`; rows appear as they come.
 
-    Starts at the window's lowest load from the equilibrium a sweep would find there.
+    Starts at the window's lowest load from the equilibrium a sweep would find there; with
+    start.file from the equilibrium next to that shape, stable or not, at its own load.
     """
     started = time.perf_counter()
     disk = make_mesh(spec)
@@ -55,13 +62,14 @@ def run_branches(
         raise SpecError("film.plane", "should be false: branches leave the plane")
     problem = Problem(disk, spec.film.model)
     window = _window(spec)
+    start = _start(spec, disk, problem, window)
     special: list[dict[str, Any]] = []
     with recording(spec, disk, path, "branches", BranchRow, started) as recorder:
         write_whole(path / "special_points.csv", _table(special))
         points = explore(
             problem,
             window,
-            first_equilibrium(problem, window[0], start_shape(spec, disk)),
+            start,
             special_points=spec.branches.special_points,
             unstable_modes=spec.branches.unstable_modes,
         )
@@ -94,6 +102,22 @@ def _window(spec: RunSpec) -> tuple[float, float]:
             "branches.load_min", f"found {low:g}; should be below load_max, {high:g}"
         )
     return low, high
+
+
+def _start(
+    spec: RunSpec, disk: DiskMesh, problem: Problem, window: tuple[float, float]
+) -> Equilibrium:
+    stored, shape = stored_start(spec, disk), start_shape(spec, disk)
+    if stored is None:
+        return first_equilibrium(problem, window[0], shape)
+    load = stored.load(problem.film.load)
+    if not window[0] <= load <= window[1]:
+        raise SpecError(
+            "start.file",
+            f"{spec.start.file} has the load {load:g}, outside the window "
+            f"{window[0]:g} to {window[1]:g}: set branches.load_min and load_max",
+        )
+    return equilibrium_near(problem, shape, load)
 
 
 def _modes(point: FilmPoint) -> dict[str, FloatArray]:

@@ -84,14 +84,17 @@ class RunFolder:
         mesh: DiskMesh,
         x: FloatArray,
         modes: Mapping[str, FloatArray] | None = None,
+        rest_mesh: str | None = None,
     ) -> None:
         """Add the shape `x` (n_v, 3), with its critical `modes`, and then its row.
+
+        `rest_mesh` is the SHA-256 of the mesh at rest, by default that of `mesh`.
 
         Raises OutputError if the disk is full or not writable; what was recorded before
         stays valid.
         """
         name = shape_name(row.step)
-        write_shape(self.path / name, mesh, x, row, modes)
+        write_shape(self.path / name, mesh, x, row, modes, rest_mesh)
         self._shapes.append((row.step, row.load, name))
         write_series(self._series, self._shapes, row.load_name)
         self._rows.append(row)

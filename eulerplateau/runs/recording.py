@@ -43,6 +43,7 @@ class Recorder(Generic[R]):
     load: Load
     row_type: type[R]
     started: float
+    rest_mesh: str
     rows: list[R] = field(default_factory=list)
     totals: dict[str, Any] = field(default_factory=dict)
 
@@ -58,7 +59,7 @@ class Recorder(Generic[R]):
         measured = asdict(self.measurer.measure(found.shape))
         row = make_row(len(self.rows), found, self.load, self.row_type, measured | columns)
         disk = self.measurer.disk_of(found.shape)
-        self.folder.record(row, disk, found.shape.x, modes)
+        self.folder.record(row, disk, found.shape.x, modes, self.rest_mesh)
         self.rows.append(row)
         return row
 
@@ -78,7 +79,7 @@ def recording(
     ):
         summary["blas_threads"] = blas_threads()
         load = FILM_LOADS[spec.film.model]
-        recorder = Recorder(folder, Measurer(disk), load, row_type, started)
+        recorder = Recorder(folder, Measurer(disk), load, row_type, started, disk.digest)
         status = "interrupted"
         try:
             yield recorder

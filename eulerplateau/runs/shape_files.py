@@ -21,6 +21,7 @@ from eulerplateau.errors import MeshError, OutputError
 from eulerplateau.film import Load
 from eulerplateau.mesh import (
     DiskMesh,
+    Shape,
     angle_defects,
     loop_frame,
     read_vtp,
@@ -29,28 +30,33 @@ from eulerplateau.mesh import (
 )
 from eulerplateau.runs.table import Row
 
+# Field data of a shape file: of its row, and the SHA-256 of the mesh at rest in bytes.
+_OF_ITS_ROW = "step", "kL3_alpha", "sigma_hat", "energy"
+_REST_MESH = "rest_mesh_sha256"
 _LOOP_FIELDS = ("kappa", "kappa_n", "kappa_g", "contact_angle", "tangent", "normal")
 
 
-@dataclass(frozen=True)
-class Shape:
-    """A shape read back from its file.
+@dataclass(frozen=True, eq=False)
+class StoredShape(Shape):
+    """A shape read back from the file that a run has written.
 
     Attributes
     ----------
-    x : (n_v, 3) float, lengths in units of L
-    triangles : (n_t, 3) int
-    loop : (n_b,) int
-    step, kL3_alpha, energy :
-        Of the row of sweep.csv it belongs to.
+    step, kL3_alpha, sigma_hat, energy :
+        Of the row of sweep.csv or branches.csv it belongs to.
+    rest_mesh : str
+        SHA-256 of the mesh at rest, as in run.json; empty if the file does not say.
     """
 
-    x: FloatArray
-    triangles: IntArray
-    loop: IntArray
     step: int
     kL3_alpha: float  # noqa: N815 - the column's name
+    sigma_hat: float
     energy: float
+    rest_mesh: str = ""
+
+    def load(self, film: Load) -> float:
+        """Return the load it was found at, in that of a film."""
+        return float(getattr(self, film.column))
 
 
 @dataclass(frozen=True)
@@ -80,41 +86,51 @@ def write_shape(
     x: FloatArray,
     row: Row,
     modes: Mapping[str, FloatArray] | None = None,
+    rest_mesh: str | None = None,
 ) -> None:
     """Write the film at positions `x` (n_v, 3) to `path` (.vtp), exactly and whole.
 
     Point fields on the loop: kappa, kappa_n, kappa_g, contact_angle, tangent, normal (of
     the film); inside: angle_defect; everywhere: on_loop (1 or 0) and the vectors `modes`,
     (n_v, 3) each, under their names. Field data, of its `row`: step, kL3_alpha, sigma_hat,
-    energy. Raises OutputError if the file cannot be written.
+    energy, and the SHA-256 of the mesh at rest, `rest_mesh`, by default that of `mesh`.
+    Raises OutputError if the file cannot be written.
     """
-    about = ("step", "kL3_alpha", "sigma_hat", "energy")
+    about = {name: np.array([getattr(row, name)]) for name in _OF_ITS_ROW}
+    digest = bytes.fromhex(mesh.digest if rest_mesh is None else rest_mesh)
     write_vtp(
         path,
         x,
         mesh.triangles,
         loop=mesh.loop,
         point_fields=_point_fields(mesh, x) | dict(modes or {}),
-        field_data={name: np.array([getattr(row, name)]) for name in about},
+        field_data=about | {_REST_MESH: np.frombuffer(digest, dtype=np.uint8)},
     )
 
 
-def read_shape(path: Path) -> Shape:
-    """Read what `write_shape` wrote; raises OutputError if the file is anything else."""
+def read_shape(path: str | Path) -> StoredShape:
+    """Read what a run wrote; raises OutputError if the file is anything else.
+
+    A sweep or a branch can be started from it: solve(problem, load, read_shape(path)).
+    """
+    path = Path(path)
     try:
         found = read_vtp(path)
     except MeshError:
         raise _not_a_shape(path) from None
     about = found.field_data
-    if len(found.lines) != 1 or not {"step", "kL3_alpha", "energy"} <= about.keys():
+    if len(found.lines) != 1 or not set(_OF_ITS_ROW) <= about.keys():
         raise _not_a_shape(path)
-    return Shape(
+    digest = about.get(_REST_MESH, np.empty(0))
+    return StoredShape(
         x=found.points,
         triangles=found.triangles,
         loop=found.lines[0][:-1],
         step=int(about["step"][0]),
         kL3_alpha=float(about["kL3_alpha"][0]),
+        sigma_hat=float(about["sigma_hat"][0]),
         energy=float(about["energy"][0]),
+        rest_mesh=digest.astype(np.uint8).tobytes().hex(),
     )
 
 

@@ -50,16 +50,28 @@ class LoopSettings(Settings):
 class StartSettings(Settings):
     """The first shape: the flat mesh, each vertex displaced across its plane.
 
+    Or one that a run has written, displaced only if that is asked for.
+
     Attributes
     ----------
+    file : str
+        A shape of a run on the same mesh (shapes/*.vtp); relative to the run's file.
     displacement : float
-        Standard deviation, in units of L, of a normal distribution.
+        Standard deviation, in units of L, of a normal distribution; 0 with a file.
     seed : int
         Of NumPy's default generator.
     """
 
+    file: str | None = None
     displacement: float = Field(default=1e-3, ge=0)
     seed: int = Field(default=1, ge=0)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _undisplaced_from_a_file(cls, given: Any) -> Any:
+        if isinstance(given, dict) and given.get("file") is not None:
+            return {"displacement": 0.0, **given}
+        return given
 
 
 class Range(Settings):
@@ -251,14 +263,14 @@ class RunSpec(Settings):
 def load_run(path: Path, overrides: dict[str, Any]) -> RunSpec:
     """Read a run specification, with `overrides` {dotted key: value} on top.
 
-    A relative mesh file is looked for beside the specification. Raises SpecError.
+    A relative mesh or start file is looked for beside the specification. Raises SpecError.
     """
     data = read_toml(path)
     for key, value in overrides.items():
         _override(data, key, value)
-    mesh = data.get("mesh")
-    if isinstance(mesh, dict) and isinstance(mesh.get("file"), str):
-        mesh["file"] = str(path.parent / mesh["file"])
+    for section in (data.get("mesh"), data.get("start")):
+        if isinstance(section, dict) and isinstance(section.get("file"), str):
+            section["file"] = str(path.parent / section["file"])
     return validate(data, RunSpec, str(path))
 
 

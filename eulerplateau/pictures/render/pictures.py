@@ -23,7 +23,7 @@ from eulerplateau.pictures.render.fields import read_field
 from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
 from eulerplateau.pictures.view import View, common_view, turning_views
-from eulerplateau.runs import Run, Shape, read_run
+from eulerplateau.runs import Run, StoredShape, read_run
 
 _WIDTH, _FRAME_WIDTH = 1200, 640
 _TURN_FRAMES = 48
@@ -46,7 +46,7 @@ class RunPictures:
     """
 
     run: Run
-    shapes: tuple[Shape, ...]
+    shapes: tuple[StoredShape, ...]
     places: tuple[int, ...]
     colour: str
     fields: dict[int, FloatArray]
@@ -107,7 +107,7 @@ class RunPictures:
         times = [_HOLD if place in ends else _MILLISECONDS for place in self.places]
         self._write("sweep", "gif", gif(frames, times))
 
-    def _picture(self, scene: Scene, place: int, shape: Shape, view: View) -> Pixels:
+    def _picture(self, scene: Scene, place: int, shape: StoredShape, view: View) -> Pixels:
         values = self.fields.get(place)
         film = coloured_film(shape, view.eye, self.colour, values, self.scale)
         pixels = scene.pixels(shape, film, loop_colours(shape, values, self.scale), view)
@@ -123,11 +123,19 @@ class RunPictures:
         write_whole(pictures / f"{coloured}.{suffix}", content)
 
 
-def _followed(run: Run) -> tuple[Shape, ...]:
+def _followed(run: Run) -> tuple[StoredShape, ...]:
     """Return the shapes of a run, each turned as little as can be from the one before."""
     found = run.shapes()
     (x,) = settled_runs([(run.series, found.x)], found.loop)
     return tuple(
-        Shape(own, found.triangles(place), found.loop, row.step, row.kL3_alpha, row.energy)
+        StoredShape(
+            own,
+            found.triangles(place),
+            found.loop,
+            row.step,
+            row.kL3_alpha,
+            row.sigma_hat,
+            row.energy,
+        )
         for place, (row, own) in enumerate(zip(run.rows, x, strict=True))
     )

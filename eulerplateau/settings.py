@@ -17,12 +17,21 @@ from eulerplateau.errors import OutputError, SpecError
 _LONGEST_QUOTE = 60
 
 
-class Settings(BaseModel):
+class _Checked(type(BaseModel)):  # type: ignore[misc]
+    """Classes whose instances made in Python are checked as if read from TOML."""
+
+    def __call__(cls, **data: Any) -> Any:
+        """Return an instance; raises SpecError, as `validate` does."""
+        return validate(data, cls, cls.__name__)
+
+
+class Settings(BaseModel, metaclass=_Checked):
     """Base of everything read from TOML: frozen, strict, no unknown keys, no NaN.
 
-    An integer is accepted where a float is meant, a list where a tuple is, and a string
-    where an enumeration or a path is; "3" is not 3. Checks that a type cannot express
-    raise ValueError in a pydantic validator.
+    An integer is accepted where a float is meant, a list or an array where a tuple is, and
+    a string where an enumeration or a path is; "3" is not 3. Made in Python too, what is
+    wrong raises SpecError. Checks that a type cannot express raise ValueError in a
+    pydantic validator.
     """
 
     model_config = ConfigDict(
@@ -67,13 +76,20 @@ def validate(data: Mapping[str, Any], model: type[Model], source: str) -> Model:
     try:
         # JSON is the mode in which strict pydantic still takes lists for tuples and
         # strings for enumerations, which is all that TOML can offer.
-        return model.model_validate_json(json.dumps(data, default=str))
+        return model.model_validate_json(json.dumps(data, default=_plain))
     except ValidationError as error:
         raise _spec_error(error.errors(include_url=False), data, model, source) from None
     except SpecError as error:
         # From a validator that knows which of two sections to blame.
         key, problem = error.args
         raise SpecError(key, f"{problem} (in {source})") from None
+
+
+def _plain(value: Any) -> Any:
+    """Return arrays as lists, models as mappings, and anything else as a string."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    return value.model_dump() if isinstance(value, BaseModel) else str(value)
 
 
 def _spec_error(

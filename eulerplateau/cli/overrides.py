@@ -23,19 +23,10 @@ def parse_setting(text: str) -> tuple[str, list[Any]]:
         return key, given.split(",")
 
 
-def load_with(path: Path, overrides: dict[str, Any]) -> RunSpec:
-    """Read a run specification with keys replaced as on the command line."""
-    from eulerplateau.runs import load_run
-
-    for key in ("mesh.file", "start.file"):
-        if key in overrides:
-            # Given on the command line, so relative to where the command was given.
-            overrides = {**overrides, key: str(Path(overrides[key]).absolute())}
-    return load_run(path, overrides)
-
-
 def load_single(path: Path, settings: tuple[str, ...]) -> RunSpec:
     """Read a run specification; each of `settings` is KEY=VALUE with a single value."""
+    from eulerplateau.runs import load_with
+
     overrides = {}
     for text in settings:
         key, values = parse_setting(text)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.overrides import load_with, parse_setting
-from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError, SpecError
+from eulerplateau.cli.overrides import parse_setting
+from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
 
 if TYPE_CHECKING:
     from eulerplateau.runs import Row, RunResult, RunSpec
@@ -51,11 +50,13 @@ def sweep(
     Writes a run folder: sweep.csv (one row per load), shapes/*.vtp and sweep.pvd (for
     ParaView), run.json, diagram.png.
     """
+    from eulerplateau.runs import planned
+
     values = [parse_setting(text) for text in settings]
     if solver is not None:
         values.append(("solver.name", [solver]))
     code = 0
-    for spec, folder in _planned(specs, values, out):
+    for spec, folder in planned(list(specs), values, out):
         try:
             result = _run(spec, folder, quiet)
         except EulerPlateauError as error:
@@ -68,36 +69,6 @@ def sweep(
             code = max(code, NOT_CONVERGED_EXIT_CODE)
         _report(result, drawn, quiet)
     return code
-
-
-def _planned(
-    specs: tuple[Path, ...], settings: list[tuple[str, list[Any]]], out: Path | None
-) -> list[tuple[RunSpec, Path]]:
-    """Return every run and its folder; all specifications are checked before any run."""
-    keys = [key for key, _ in settings]
-    varied = {key for key, values in settings if len(values) > 1}
-    combinations = list(itertools.product(*(values for _, values in settings)))
-    many = len(specs) * len(combinations) > 1
-    runs = []
-    for path in specs:
-        for combination in combinations:
-            overrides = dict(zip(keys, combination, strict=True))
-            name = path.stem + "".join(
-                f"-{key.rpartition('.')[2]}={_word(value)}"
-                for key, value in zip(keys, combination, strict=True)
-                if key in varied
-            )
-            folder = path.parent / name if out is None else out / name if many else out
-            runs.append((load_with(path, overrides), folder))
-    folders = [folder for _, folder in runs]
-    if len(set(folders)) < len(folders):
-        raise SpecError("RUN.toml", "two runs would share a folder: rename a file")
-    return runs
-
-
-def _word(value: Any) -> str:
-    """Return a value as a part of a folder's name."""
-    return "".join(c if c.isalnum() or c in "._+-" else "_" for c in Path(str(value)).stem)
 
 
 def _run(spec: RunSpec, folder: Path, quiet: bool) -> RunResult:

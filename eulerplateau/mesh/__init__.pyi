@@ -2,6 +2,7 @@ from .curvature import angle_defects as angle_defects, loop_frame as loop_frame
 from .disk import DiskMesh as DiskMesh
 from .files import load_mesh as load_mesh, read_mesh as read_mesh, write_mesh as write_mesh
 from .generation import generate as generate
+from .making import mesh_polygon as mesh_polygon
 from .measures import Measurer as Measurer, Measures as Measures, measure as measure
 from .shape import Shape as Shape
 from .spec import ALGORITHMS as ALGORITHMS, MeshSpec as MeshSpec

@@ -1,6 +1,8 @@
 from .exploration import Exploration as Exploration, run_branches as run_branches
 from .folder import shape_name as shape_name
+from .plan import load_with as load_with, planned as planned
 from .record import Run as Run, read_run as read_run, read_runs as read_runs
+from .running import run as run
 from .series import (
     Branch as Branch,
     Leg as Leg,

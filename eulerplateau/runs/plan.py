@@ -1,0 +1,58 @@
+"""Which runs a call asks for, and the folder of each: files and keys that are replaced."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from eulerplateau.errors import SpecError
+from eulerplateau.runs.spec import RunSpec, load_run
+
+# Keys that name a file: given in a call, it is relative to where the call was made.
+_FILES = "mesh.file", "start.file"
+
+
+def planned(
+    specs: Sequence[Path], settings: Sequence[tuple[str, list[Any]]], out: Path | None
+) -> list[tuple[RunSpec, Path]]:
+    """Return every run and its folder; all specifications are checked before any run.
+
+    `settings` are dotted keys, each with the values it takes; several values make several
+    runs, several keys all their combinations. `out` is the folder of a single run, or that
+    which holds those of many; by default they lie beside their specifications.
+    """
+    keys = [key for key, _ in settings]
+    varied = {key for key, values in settings if len(values) > 1}
+    combinations = list(itertools.product(*(values for _, values in settings)))
+    many = len(specs) * len(combinations) > 1
+    runs = []
+    for path in specs:
+        for combination in combinations:
+            overrides = dict(zip(keys, combination, strict=True))
+            name = path.stem + "".join(
+                f"-{key.rpartition('.')[2]}={_word(value)}"
+                for key, value in zip(keys, combination, strict=True)
+                if key in varied
+            )
+            folder = path.parent / name if out is None else out / name if many else out
+            runs.append((load_with(path, overrides), folder))
+    folders = [folder for _, folder in runs]
+    if len(set(folders)) < len(folders):
+        raise SpecError("RUN.toml", "two runs would share a folder: rename a file")
+    return runs
+
+
+def load_with(path: Path, overrides: Mapping[str, Any]) -> RunSpec:
+    """Read a run specification with keys {dotted key: value} replaced."""
+    found = dict(overrides)
+    for key in _FILES:
+        if key in found:
+            found[key] = str(Path(found[key]).absolute())
+    return load_run(path, found)
+
+
+def _word(value: Any) -> str:
+    """Return a value as a part of a folder's name."""
+    return "".join(c if c.isalnum() or c in "._+-" else "_" for c in Path(str(value)).stem)

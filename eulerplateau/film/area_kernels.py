@@ -1,4 +1,4 @@
-"""Compiled loops over a film's triangles: sides, area, its derivatives. See area_film.py.
+"""The area of a film's triangles with its two derivatives: compiled loops (area.py).
 
 Side j of a triangle lies opposite its corner j; of corners i and j, j = i + 1 mod 3 comes
 next. Arrays in, arrays out; what sums into an array expects zeros there.

@@ -1,4 +1,7 @@
-"""Compiled edge flips. Arrays in, arrays out; helpers stay in this file (numba #1833)."""
+"""How edges are flipped to Delaunay's triangles, on a surface: compiled loops (repair.py).
+
+Arrays in, arrays out; helpers stay in this file (numba #1833).
+"""
 
 from __future__ import annotations
 

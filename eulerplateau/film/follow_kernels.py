@@ -1,4 +1,4 @@
-"""Compiled loops of a plane mesh that follows its loop. Arrays in, arrays out.
+"""How a plane mesh follows its loop: compiled loops, arrays in, arrays out.
 
 Helpers stay in this file (numba #1833).
 """
@@ -9,34 +9,6 @@ import numpy as np
 from numba import njit
 
 from eulerplateau.arrays import FloatArray, IntArray
-
-
-@njit(cache=True, error_model="numpy")
-def smallest_angle(x: FloatArray, triangles: IntArray) -> float:
-    """Return the smallest angle, in radians, of triangles of x (n_v, 2).
-
-    Of a triangle that has turned over the angles are negative.
-    """
-    smallest = np.pi
-    for t in range(len(triangles)):
-        for j in range(3):
-            i, k, m = triangles[t, j], triangles[t, (j + 1) % 3], triangles[t, (j + 2) % 3]
-            px, py = x[k, 0] - x[i, 0], x[k, 1] - x[i, 1]
-            qx, qy = x[m, 0] - x[i, 0], x[m, 1] - x[i, 1]
-            smallest = min(smallest, np.arctan2(px * qy - py * qx, px * qx + py * qy))
-    return smallest
-
-
-@njit(cache=True, error_model="numpy")
-def _cotangents(x: FloatArray, triangles: IntArray, weights: FloatArray) -> None:
-    """Fill weights (n_t, 3) with each corner's cotangent; 0 without an area."""
-    for t in range(len(triangles)):
-        for j in range(3):
-            i, k, m = triangles[t, j], triangles[t, (j + 1) % 3], triangles[t, (j + 2) % 3]
-            px, py = x[k, 0] - x[i, 0], x[k, 1] - x[i, 1]
-            qx, qy = x[m, 0] - x[i, 0], x[m, 1] - x[i, 1]
-            across = abs(px * qy - py * qx)
-            weights[t, j] = (px * qx + py * qy) / across if across > 0.0 else 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -57,8 +29,8 @@ def _pull(
 
 @njit(cache=True, error_model="numpy")
 def spread_inside(
-    x: FloatArray,
     triangles: IntArray,
+    weights: FloatArray,
     interior: IntArray,
     move: FloatArray,
     small: float,
@@ -66,14 +38,14 @@ def spread_inside(
 ) -> float:
     """Fill the interior of move (n_v, 2), given on the loop, with its harmonic extension.
 
-    That of the shape x (n_v, 2), by conjugate gradients on both coordinates at once, scaled
-    by the diagonal; at most `limit` of them, until what is left of the forces has fallen to
-    `small` times what it was. Returns by how much it has.
+    That of a shape by the cotangents `weights` (n_t, 3) at its triangles' corners, by
+    conjugate gradients on both coordinates at once, scaled by the diagonal; at most `limit`
+    of them, until what is left of the forces has fallen to `small` times what it was.
+    Returns by how much it has.
     """
-    weights, pull = np.empty((len(triangles), 3)), np.empty((len(x), 2))
-    diagonal, rest = np.zeros(len(x)), np.zeros((len(x), 2))
-    way = np.zeros((len(x), 2))
-    _cotangents(x, triangles, weights)
+    n_v = len(move)
+    diagonal, pull = np.zeros(n_v), np.empty((n_v, 2))
+    rest, way = np.zeros((n_v, 2)), np.zeros((n_v, 2))
     for t in range(len(triangles)):
         for j in range(3):
             diagonal[triangles[t, (j + 1) % 3]] += weights[t, j]

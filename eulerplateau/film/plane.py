@@ -17,7 +17,7 @@ from eulerplateau.film.harmonic import follower
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.plane_mesh import carry_in_plane
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
-from eulerplateau.mesh import DiskMesh, Shape
+from eulerplateau.mesh import DiskMesh, Shape, polygon_area
 
 # A loop whose extent across its mean plane is a smaller part of the largest is flat.
 _FLAT = 1e-9
@@ -170,13 +170,6 @@ class PolygonArea(Term):
     def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
         """Return the derivative of the force by the load."""
         return polygon_gradient(x) if parameter == "load" else None
-
-
-def polygon_area(x: FloatArray) -> float:
-    """Return the area (signed) of a polygon (n, 2), about its mean to lose no digits."""
-    y = x - x.mean(axis=0)
-    after = np.roll(y, -1, axis=0)
-    return 0.5 * float((y[:, 0] * after[:, 1] - y[:, 1] * after[:, 0]).sum())
 
 
 def polygon_gradient(x: FloatArray) -> FloatArray:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.follow_kernels import smallest_angle, spread_inside
+from eulerplateau.film.follow_kernels import spread_inside
 from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.loop import strands_meet
+from eulerplateau.mesh import cotangents, smallest_angle
 
 # With fewer vertices inside, per vertex of the loop, no mesh has good triangles along it.
 _FEW = 0.25
@@ -42,7 +43,7 @@ def carry_in_plane(
     best, angle = start, -np.inf
     for steps in _STEPS if mendable else _STEPS[:1]:
         flat = _followed(tiling, start, polygon, steps)
-        reached = np.degrees(smallest_angle(flat, tiling.triangles))
+        reached = smallest_angle(*_sides(tiling, flat))
         if reached > angle:
             best, angle = flat, reached
         if reached >= LIMITS.thin:
@@ -63,7 +64,17 @@ def _followed(
     for left in range(steps, 0, -1):
         move = np.zeros_like(x)
         move[tiling.loop] = (polygon - x[tiling.loop]) / left
-        spread_inside(x, tiling.triangles, tiling.interior, move, _SMALL, _LIMIT)
+        edges, areas = _sides(tiling, x)
+        weights = cotangents(edges, np.abs(areas))
+        spread_inside(tiling.triangles, weights, tiling.interior, move, _SMALL, _LIMIT)
         x = x + move
     x[tiling.loop] = polygon
     return x
+
+
+def _sides(tiling: Tiling, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the triangles' sides (n_t, 3, 2) and areas (n_t,), < 0 where turned over."""
+    corners = x[tiling.triangles]
+    edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
+    (a, b), (c, d) = edges[:, 0].T, edges[:, 1].T
+    return edges, 0.5 * (a * d - b * c)

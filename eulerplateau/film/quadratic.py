@@ -14,7 +14,7 @@ from eulerplateau.film.condensation import Condensation, condense
 from eulerplateau.film.load import SPRING_LOAD, TENSION, Load
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible
 from eulerplateau.loop.kernels import film_energy_gradient
-from eulerplateau.mesh import DiskMesh, Shape
+from eulerplateau.mesh import DiskMesh, Shape, cotangents
 
 # Cotangents are as large as a triangle is thin; of this size they leave the weights of the
 # triangles around it four digits.
@@ -193,13 +193,9 @@ def dirichlet(mesh: DiskMesh) -> QuadraticFilm:
     if thin.any():
         problem = "is too thin for the film's cotangent weights: mesh the polygon anew"
         raise MeshError("triangle", int(np.flatnonzero(thin)[0]), problem)
-    # One area for all three corners: its rounding in a sliver then scales the sliver's
-    # energy and cannot make it indefinite.
-    dots = -(np.roll(side, -1, axis=1) * np.roll(side, 1, axis=1)).sum(axis=2)
-    cotangents = dots / doubled_area[:, None]
     opposite = np.stack([np.roll(mesh.triangles, shift, axis=1) for shift in (-1, 1)], 2)
     key = np.sort(opposite.reshape(-1, 2), axis=1) @ (mesh.n_v, 1)
     place = np.searchsorted(mesh.edges @ (mesh.n_v, 1), key)
     weights = np.zeros(len(mesh.edges))
-    np.add.at(weights, place, cotangents.ravel() / 4)
+    np.add.at(weights, place, cotangents(side, doubled_area / 2).ravel() / 4)
     return QuadraticFilm(mesh.edges, weights, mesh.shape, mesh.interior, TENSION)

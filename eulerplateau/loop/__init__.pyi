@@ -15,6 +15,7 @@ from .loop import (
     Loop as Loop,
     backward_differences as backward_differences,
     differences as differences,
+    largest_turning as largest_turning,
     strands_meet as strands_meet,
 )
 from .motions import (

@@ -61,11 +61,7 @@ class Loop:
 
     def largest_turning(self, x_loop: FloatArray) -> float:
         """Return the largest angle between consecutive edges, degrees, in [0, 180]."""
-        after = self.chords(x_loop)
-        before = np.roll(after, 1, axis=0)
-        sine = np.linalg.norm(np.cross(before, after), axis=1)
-        cosine = (before * after).sum(axis=1)
-        return float(np.degrees(np.arctan2(sine, cosine).max()))
+        return largest_turning(x_loop)
 
     def strands_meet(self, x_loop: FloatArray) -> bool:
         """Whether two stretches of the loop have come as close as neighbours are."""
@@ -112,6 +108,18 @@ def strands_meet(x_loop: FloatArray, reach: float | None = None) -> bool:
     if reach is None:
         reach = float(np.linalg.norm(differences(x_loop), axis=1).max())
     return kernels.strands_within(np.ascontiguousarray(x_loop), reach, _TURNING_BACK)
+
+
+def largest_turning(x_loop: FloatArray) -> float:
+    """Return the largest angle between consecutive edges, degrees, in [0, 180].
+
+    x_loop : (n_b, 3) float, the vertices of a closed loop in any unit.
+    """
+    after = differences(x_loop)
+    before = np.roll(after, 1, axis=0)
+    sine = np.linalg.norm(np.cross(before, after), axis=1)
+    cosine = (before * after).sum(axis=1)
+    return float(np.degrees(np.arctan2(sine, cosine).max()))
 
 
 def differences(rows: FloatArray) -> FloatArray:

@@ -4,9 +4,11 @@ from .files import load_mesh as load_mesh, read_mesh as read_mesh, write_mesh as
 from .generation import generate as generate
 from .making import mesh_polygon as mesh_polygon
 from .measures import Measurer as Measurer, Measures as Measures, measure as measure
+from .polygon import polygon_area as polygon_area
 from .shape import Shape as Shape
 from .spec import ALGORITHMS as ALGORITHMS, MeshSpec as MeshSpec
 from .triangles import (
+    cotangents as cotangents,
     neighbours as neighbours,
     smallest_angle as smallest_angle,
     unit as unit,

@@ -11,7 +11,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, MissingLibraryError, SpecError
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.mesh.polygon import area, perimeter, subdivide, to_unit_scale
+from eulerplateau.mesh.polygon import perimeter, polygon_area, subdivide, to_unit_scale
 from eulerplateau.mesh.spec import MeshSpec
 
 _PAPER_VERTICES = 474
@@ -88,7 +88,7 @@ def _meet_target(
 def _lattice_edge_length(spec: MeshSpec, vertices: int) -> float:
     """Edge length h of a triangular lattice: N = A / (sqrt(3)/2 h^2) + P / 2h + 1."""
     rough = spec.polygon.corners(0.1)
-    half, whole = perimeter(rough) / 4, area(rough) * 2 / np.sqrt(3)
+    half, whole = perimeter(rough) / 4, polygon_area(rough) * 2 / np.sqrt(3)
     inverse = (np.sqrt(half**2 + whole * (vertices - 1)) - half) / whole
     return float(1 / inverse)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import Loop
+from eulerplateau.loop import largest_turning
 from eulerplateau.mesh.crossings import self_intersections
 from eulerplateau.mesh.curvature import (
     loop_frame,
@@ -39,7 +39,7 @@ class Measures:
     waist_twist : float
         See `waist_twist`; degrees.
     self_intersections : int
-        See `intersections.self_intersections`.
+        See `crossings.self_intersections`.
     aspect : float
         See `aspect`.
     min_angle : float
@@ -88,7 +88,7 @@ class Measurer:
             abs_kappa_n=float(np.abs(frame.kappa_n) @ frame.mean_lengths),
             total_gauss_curvature=total_gauss_curvature(disk, x),
             area=float(areas.sum()),
-            max_turning=Loop(disk.rest_lengths).largest_turning(shape.x_loop),
+            max_turning=largest_turning(shape.x_loop),
             waist_twist=waist_twist(self._path, x),
             self_intersections=crossings,
             aspect=aspect(disk, x),

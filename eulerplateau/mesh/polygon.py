@@ -68,13 +68,17 @@ def counter_clockwise(corners: ArrayLike) -> FloatArray:
             f"the side from corner {first[0]} meets the side from corner {first[1]}: "
             "a polygon must not cross or touch itself"
         )
-    return given if area(unit) > 0 else np.roll(given[::-1], 1, axis=0)
+    return given if polygon_area(unit) > 0 else np.roll(given[::-1], 1, axis=0)
 
 
-def area(corners: FloatArray) -> float:
-    """Return the enclosed area, positive if `corners` (n, 2) run counter-clockwise."""
-    x, y = (corners - corners[0]).T
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+def polygon_area(corners: FloatArray) -> float:
+    """Return the enclosed area, positive if `corners` (n, 2) run counter-clockwise.
+
+    Taken about their mean, so that a place far from the origin costs no digits.
+    """
+    y = corners - corners.mean(axis=0)
+    after = np.roll(y, -1, axis=0)
+    return 0.5 * float((y[:, 0] * after[:, 1] - y[:, 1] * after[:, 0]).sum())
 
 
 def perimeter(corners: FloatArray) -> float:

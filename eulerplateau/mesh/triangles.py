@@ -1,4 +1,4 @@
-"""Triangles of any surface: their edges, neighbours, areas and angles."""
+"""What a triangle of any surface is asked for: edges, neighbours, areas, angles."""
 
 from __future__ import annotations
 
@@ -25,15 +25,38 @@ def unit(vectors: FloatArray) -> FloatArray:
 
 
 def smallest_angle(edges: FloatArray, areas: FloatArray) -> float:
-    """Return the smallest angle of triangles with sides (n_t, 3, 3), degrees.
+    """Return the smallest angle of all triangles, degrees: 60 at best.
 
-    60 at best, 0 for a triangle without area.
+    Parameters
+    ----------
+    edges : (n_t, 3, d) float
+        The sides of each triangle, in any order.
+    areas : (n_t,) float
+        Their areas: 0 gives an angle of 0, a negative one, of a plane triangle that has
+        turned over, a negative angle.
     """
     # Opposite the shortest side, so acute.
     length = np.sort(np.linalg.norm(edges, axis=2), axis=1)
     span = length[:, 1] * length[:, 2]
     sine = np.divide(2 * areas, span, out=np.zeros_like(span), where=span > 0)
-    return float(np.degrees(np.arcsin(np.minimum(sine, 1.0)).min()))
+    return float(np.degrees(np.arcsin(np.clip(sine, -1.0, 1.0)).min()))
+
+
+def cotangents(edges: FloatArray, areas: FloatArray) -> FloatArray:
+    """Return the cotangents (n_t, 3) of the angles at the corners; 0 without an area.
+
+    Parameters
+    ----------
+    edges : (n_t, 3, d) float
+        The sides of each triangle, head to tail; side j lies opposite corner j.
+    areas : (n_t,) float
+        Their areas. One for all three corners: its rounding in a sliver then scales the
+        sliver's Dirichlet energy and cannot make it indefinite.
+    """
+    dots = -(np.roll(edges, -1, axis=1) * np.roll(edges, 1, axis=1)).sum(axis=2)
+    doubled = 2 * areas[:, None]
+    found: FloatArray = np.divide(dots, doubled, out=np.zeros_like(dots), where=doubled > 0)
+    return found
 
 
 def neighbours(triangles: IntArray) -> IntArray:

@@ -12,11 +12,11 @@ import pytest
 from eulerplateau.errors import EulerPlateauError, SpecError
 from eulerplateau.mesh import ALGORITHMS, MeshSpec, generation as generate, load_mesh
 from eulerplateau.mesh.polygon import (
-    area,
     counter_clockwise,
     ellipse,
     ellipse_perimeter,
     perimeter,
+    polygon_area,
     subdivide,
 )
 from eulerplateau.settings import load_toml, validate
@@ -62,7 +62,7 @@ AREAS = {
 def test_a_polygon_and_its_film_have_the_exact_area(name):
     polygon, exact = AREAS[name]
     wanted = spec(polygon, vertices=300)
-    assert area(wanted.polygon.corners(0.1)) == pytest.approx(exact, rel=1e-14)
+    assert polygon_area(wanted.polygon.corners(0.1)) == pytest.approx(exact, rel=1e-14)
     assert film_area(generate(wanted)) == pytest.approx(exact, rel=1e-13)
 
 
@@ -93,7 +93,7 @@ def test_a_circle_of_radius_one_is_the_ellipse_of_aspect_one():
 def test_clockwise_corners_are_turned_round(start):
     square = np.roll([[0, 0], [1, 0], [1, 1], [0, 1]], start, axis=0)
     turned = counter_clockwise(square[::-1])
-    assert area(turned) == 1
+    assert polygon_area(turned) == 1
     assert turned[0].tolist() == square[-1].tolist()
     assert counter_clockwise(square).tolist() == square.tolist()
 
@@ -123,7 +123,7 @@ def test_a_polygon_that_bounds_no_region_is_refused(name, unit):
 
 def test_corners_on_a_straight_side_and_parallel_sides_are_fine():
     comb = [[0, 0], [1, 0], [3, 0], [3, 2], [2, 2], [2, 1], [1, 1], [1, 2], [0, 2]]
-    assert area(counter_clockwise(comb)) == 5
+    assert polygon_area(counter_clockwise(comb)) == 5
 
 
 # Specifications.
@@ -232,7 +232,7 @@ def test_the_loop_runs_counter_clockwise_and_evenly_along_each_side(polygon):
     placed = mesh.x[mesh.loop, :2] * mesh.length
     np.testing.assert_allclose(placed, expected - expected.mean(axis=0), atol=1e-14)
     assert mesh.length == pytest.approx(perimeter(expected), rel=1e-14)
-    assert area(placed) > 0
+    assert polygon_area(placed) > 0
 
 
 def test_sides_of_equal_length_are_divided_alike():

@@ -11,12 +11,13 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.film import follow_kernels
 from eulerplateau.film.area import area
 from eulerplateau.film.harmonic import follower
-from eulerplateau.film.plane import polygon_area
 from eulerplateau.loop import kernels, slide_kernels
 from eulerplateau.loop.lengths import jacobian
 from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.motions import rigid_motions, sliding
 from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.polygon import polygon_area
+from eulerplateau.mesh.triangles import cotangents
 from eulerplateau.solvers.in_plane import kernels as plane_kernels
 from eulerplateau.solvers.in_plane.chain import Chain, Point
 from eulerplateau.solvers.second_variation import tangent_model
@@ -225,15 +226,11 @@ def test_inside_follows_harmonically(oval: DiskMesh) -> None:
     move = np.zeros_like(x)
     move[oval.loop] = 0.1 * np.random.default_rng(9).standard_normal((oval.n_b, 2))
     exact = follower(film, film.sides(oval.x)).extend(move[oval.loop])[oval.interior]
-    left = follow_kernels.spread_inside(x, oval.triangles, oval.interior, move, 1e-13, 500)
+    corners = x[oval.triangles]
+    edges = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
+    weights = cotangents(edges, film.sides(oval.x).areas)
+    left = follow_kernels.spread_inside(
+        oval.triangles, weights, oval.interior, move, 1e-13, 500
+    )
     assert left < 1e-13
     np.testing.assert_allclose(move[oval.interior], exact, atol=1e-12)
-
-
-def test_smallest_angle_is_that_of_the_film_and_negative_where_it_folds(
-    oval: DiskMesh,
-) -> None:
-    x = np.ascontiguousarray(oval.x[:, :2])
-    angle = np.degrees(follow_kernels.smallest_angle(x, oval.triangles))
-    assert angle == pytest.approx(area(oval).sides(oval.x).smallest_angle, rel=1e-12)
-    assert follow_kernels.smallest_angle(x * [1, -1], oval.triangles) < 0

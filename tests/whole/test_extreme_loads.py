@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.loop.lengths import close_with_lengths
-from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.loop import largest_turning
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.settings import validate
@@ -128,7 +128,7 @@ def test_largest_turning_of_a_bent_square_is_the_angle_it_is_bent_by(angle: floa
     """Four equal edges; the rhombus closes whatever its angle."""
     c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     x = np.array([[0, 0, 0], [1, 0, 0], [1 + c, s, 0], [c, s, 0]]) / 4
-    turning = Loop(np.full(4, 0.25)).largest_turning(x)
+    turning = largest_turning(x)
     assert turning == pytest.approx(max(angle, 180.0 - angle), abs=1e-12)
 
 

@@ -1,7 +1,8 @@
-"""Compiled loops of a film kept in its plane. Arrays in, arrays out.
+"""Energy, forces and Newton's step of a chain of edges round a film in its plane: compiled.
 
-What is unknown are the angles theta_v of the loop's edges s_v t_v, t_v = (cos theta_v,
-sin theta_v): lengths then hold exactly, the loop closes where p_n = sum_v s_v t_v = 0, and
+Arrays in, arrays out. What is unknown are the angles theta_v of the loop's edges s_v t_v,
+t_v = (cos theta_v, sin theta_v): lengths then hold exactly, the loop closes where p_n =
+sum_v s_v t_v = 0, and
 
     E = sum_v (2 - 2 cos(theta_v - theta_{v-1})) / <s_v> + load/2 sum_v p_v x s_v t_v
 

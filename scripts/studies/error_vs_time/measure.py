@@ -103,6 +103,7 @@ def solved(
 def saddle_in_plane(problem: Problem, x: FloatArray, load: float) -> Equilibrium:
     """Return the equilibrium next to x (n_v, 3) in the plane, whatever its index."""
     from eulerplateau.film.plane_energy import PlaneEnergy
+
     from eulerplateau.solvers.in_plane.newton import settle_in_plane
 
     x, loop = x.copy(), problem.loop_vertices

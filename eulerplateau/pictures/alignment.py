@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.runs import Series, StoredShape
+from eulerplateau.mesh import Shape
+from eulerplateau.runs import Series
 
 # Where the camera of the page stands at first: slanted, from the front, and not midway
 # between y and z, where it would see one half of a saddle edge-on.
@@ -18,7 +18,7 @@ EYE = np.array([0.3, -0.45, 0.85])
 _HALF_TURNS = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
 
 
-def aligned(shapes: Sequence[StoredShape]) -> list[StoredShape]:
+def aligned(shapes: Sequence[Shape]) -> list[Shape]:
     """Return the shapes free of the rigid motion an equilibrium leaves undetermined.
 
     Each loop is centred at the origin, its longest principal axis along x and its
@@ -28,7 +28,7 @@ def aligned(shapes: Sequence[StoredShape]) -> list[StoredShape]:
     from turn by a quarter each, in opposite senses.) The first loop has its normal along
     +z. A tie, which only symmetric films can have, falls either way.
     """
-    turned: list[StoredShape] = []
+    turned: list[Shape] = []
     for shape in shapes:
         x = shape.x - shape.x[shape.loop].mean(axis=0)
         axes = np.linalg.svd(x[shape.loop], full_matrices=False)[2].T
@@ -38,7 +38,7 @@ def aligned(shapes: Sequence[StoredShape]) -> list[StoredShape]:
             away = [np.linalg.norm(choice[shape.loop] - before) for choice in choices]
         else:
             away = [-_area_vector(choice[shape.loop])[2] for choice in choices]
-        turned.append(replace(shape, x=choices[int(np.argmin(away))]))
+        turned.append(shape.moved(choices[int(np.argmin(away))]))
     return turned
 
 

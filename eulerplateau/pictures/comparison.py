@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh import Shape
 from eulerplateau.pictures.alignment import aligned
 from eulerplateau.pictures.figure import (
     ABS_KAPPA_N,
@@ -33,7 +34,7 @@ from eulerplateau.pictures.panels import (
 )
 from eulerplateau.pictures.vector_film import draw_film, room
 from eulerplateau.pictures.view import common_view
-from eulerplateau.runs import Row, Run, StoredShape, is_planar, read_shape
+from eulerplateau.runs import Row, Run, is_planar, read_shape
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -178,7 +179,7 @@ def _shown(run: Run, steps: Sequence[int] | None) -> list[Row]:
 class _Films:
     """Shapes in lines, each with the number of its run, and how they are seen."""
 
-    lines: list[tuple[int, Sequence[tuple[Row, StoredShape]]]]
+    lines: list[tuple[int, Sequence[tuple[Row, Shape]]]]
     eye: FloatArray
     half: tuple[float, float]
 
@@ -208,8 +209,8 @@ def _films(runs: Sequence[Run], shown: Sequence[Sequence[Row]]) -> _Films:
 
 
 def _lines(
-    shapes: Sequence[tuple[Row, StoredShape]],
-) -> list[Sequence[tuple[Row, StoredShape]]]:
+    shapes: Sequence[tuple[Row, Shape]],
+) -> list[Sequence[tuple[Row, Shape]]]:
     """Break the shapes of a run into lines of nearly equal length."""
     count = max(-(-len(shapes) // _PER_LINE), 1)
     length = max(-(-len(shapes) // count), 1)

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh import Shape
 from eulerplateau.pictures.view import UP
-from eulerplateau.runs import StoredShape
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,16 +26,14 @@ _DARKEST = 0.72
 _NEARER = 1.0
 
 
-def room(shapes: Sequence[StoredShape], eye: FloatArray) -> tuple[float, float]:
+def room(shapes: Sequence[Shape], eye: FloatArray) -> tuple[float, float]:
     """Return half the width and height that hold every shape about its loop's centre."""
     seen = np.concatenate([_project(shape.x, eye)[:, :2] for shape in shapes])
     half = 1.06 * np.abs(seen).max(axis=0)
     return float(half[0]), float(half[1])
 
 
-def draw_film(
-    ax: Axes, shape: StoredShape, eye: FloatArray, half: tuple[float, float]
-) -> None:
+def draw_film(ax: Axes, shape: Shape, eye: FloatArray, half: tuple[float, float]) -> None:
     """Draw a shape, centred at the origin, into a field of `half` its width and height.
 
     `eye` is the unit vector (3,) towards the viewer. Triangles and loop edges are painted

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.runs import StoredShape
+from eulerplateau.mesh import Shape
 
 UP = np.array([0.0, 0.0, 1.0])
 # Height over width of every picture.
@@ -42,7 +42,7 @@ class View:
     half_height: float
 
 
-def common_view(shapes: Sequence[StoredShape]) -> View:
+def common_view(shapes: Sequence[Shape]) -> View:
     """Return a view that holds all shapes and sees about the most of the worst seen.
 
     Of films that turn over little by little, in an animation, no view sees all: each eye
@@ -56,7 +56,7 @@ def common_view(shapes: Sequence[StoredShape]) -> View:
     return _raised(_holding(shapes, good[np.argmax(good @ _EYE)]))
 
 
-def turning_views(shapes: Sequence[StoredShape], count: int) -> list[View]:
+def turning_views(shapes: Sequence[Shape], count: int) -> list[View]:
     """Return `count` views once around the vertical axis; each could hold all shapes."""
     height = np.radians(_TURN_HEIGHT)
     turns = 2 * np.pi * np.arange(count) / count - np.pi / 2
@@ -78,7 +78,7 @@ def turning_views(shapes: Sequence[StoredShape], count: int) -> list[View]:
     return [_raised(replace(view, focus=focus, half_height=half)) for view in views]
 
 
-def _holding(shapes: Sequence[StoredShape], eye: FloatArray) -> View:
+def _holding(shapes: Sequence[Shape], eye: FloatArray) -> View:
     axes = _screen(eye)
     flat = np.concatenate([shape.x for shape in shapes]) @ axes
     low, high = flat.min(axis=0), flat.max(axis=0)
@@ -108,7 +108,7 @@ def _candidate_eyes() -> FloatArray:
     return np.stack([across * np.sin(turn), -across * np.cos(turn), np.sin(height)], axis=1)
 
 
-def _visible_part(shape: StoredShape, eyes: FloatArray) -> FloatArray:
+def _visible_part(shape: Shape, eyes: FloatArray) -> FloatArray:
     """Return how much of a film's worse half (0 to _SLANTED) each eye (n, 3) sees.
 
     The halves are left and right, like the lobes of an eight, of which an eye may face one

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.shape import Shape
 from eulerplateau.pictures.alignment import aligned
 from eulerplateau.pictures.child import draw_in_child
+from eulerplateau.pictures.figure import drawn
 from eulerplateau.pictures.render import draw_shapes
 from eulerplateau.pictures.sweep_diagram import draw_diagram, plot_diagram
 from eulerplateau.runs.record import Run
-from eulerplateau.runs.shape_files import Shape
 from eulerplateau.runs.states import distinct_steps
 from eulerplateau.runs.table import Row, RowWriter
 from eulerplateau.solvers.equilibrium import Status
@@ -118,10 +119,7 @@ def test_alignment_undoes_every_rigid_motion(mesh: DiskMesh) -> None:
         if moved:
             turn = rotation()
             x = [x[0] @ turn, x[1] @ turn.T + 3.0, x[2] @ turn @ turn - 1.0]
-        return [
-            Shape(film, mesh.triangles, mesh.loop, step, 1.0, 1.0)
-            for step, film in enumerate(x)
-        ]
+        return [Shape(film, mesh.triangles, mesh.loop) for film in x]
 
     still, moved = aligned(shapes(moved=False)), aligned(shapes(moved=True))
     # Only the long axis's direction is left to chance: half a turn about z.
@@ -136,7 +134,7 @@ def test_alignment_undoes_every_rigid_motion(mesh: DiskMesh) -> None:
 def test_alignment_never_mirrors(mesh: DiskMesh) -> None:
     """A film and its mirror image stay as unlike as they are."""
     x = twisted(mesh, 0.5)
-    left = Shape(x, mesh.triangles, mesh.loop, 0, 1.0, 1.0)
+    left = Shape(x, mesh.triangles, mesh.loop)
     right = replace(left, x=x * [1.0, 1.0, -1.0])
     a, b = aligned([left, right])
     for shape in (a, b):
@@ -163,6 +161,36 @@ def test_diagram_is_drawn(tmp_path: Path, rows: list[Row]) -> None:
             table.append(row)
     assert draw_diagram(tmp_path)
     assert read_png(tmp_path / "diagram.png").std() > 0.05
+
+
+def test_diagram_that_fails_is_one_line_in_the_log(
+    tmp_path: Path, rows: list[Row], caplog: pytest.LogCaptureFixture
+) -> None:
+    """Whatever it fails of: a folder that is no run, or an error nobody foresaw."""
+    for what in (tmp_path, tmp_path / "none"):
+        assert not draw_diagram(what)
+    with RowWriter(tmp_path / "sweep.csv") as table:
+        table.append(rows[0])
+    (tmp_path / "diagram.png").mkdir()
+    assert not draw_diagram(tmp_path)
+
+    def fail() -> None:
+        raise ZeroDivisionError("first line\nsecond line")
+
+    assert not drawn("picture.png", fail)
+    messages = [record.getMessage() for record in caplog.records]
+    assert len(messages) == 4
+    assert not any("\n" in message for message in messages)
+    assert "picture.png" in messages[-1]
+    assert "ZeroDivisionError" in messages[-1]
+
+
+def test_drawing_is_not_kept_from_being_interrupted() -> None:
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        drawn("picture.png", interrupted)
 
 
 @pytest.mark.parametrize("case", ["none", "one", "stalled", "planar", "up and down", "nan"])

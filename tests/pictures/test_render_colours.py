@@ -8,6 +8,7 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.shape import Shape
 from eulerplateau.pictures.render.colours import (
     LOOP,
     SIDES,
@@ -16,7 +17,6 @@ from eulerplateau.pictures.render.colours import (
     loop_colours,
     scale_of,
 )
-from eulerplateau.runs.shape_files import Shape
 from tests.helpers.shapes import disk_points, eight, mesh_of
 
 ABOVE = np.array([0.0, 0.0, 1.0])
@@ -30,7 +30,7 @@ def mesh() -> DiskMesh:
 
 def film(mesh: DiskMesh, t: float) -> Shape:
     x = eight(mesh.x[:, :2] / np.hypot(*mesh.x.T[:2]).max(), t)
-    return Shape(x, mesh.triangles, mesh.loop, 0, 1.0, 1.0)
+    return Shape(x, mesh.triangles, mesh.loop)
 
 
 def only(mesh: DiskMesh, value: float, *, on_loop: bool) -> FloatArray:

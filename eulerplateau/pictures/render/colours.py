@@ -13,8 +13,8 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
+from eulerplateau.mesh import Shape
 from eulerplateau.pictures.figure import load_matplotlib
-from eulerplateau.runs import StoredShape
 
 SIDES, SOAP = "sides", "soap"
 LOOP = np.array([0.17, 0.17, 0.17])
@@ -103,7 +103,7 @@ class PaintedFilm:
 
 
 def coloured_film(
-    shape: StoredShape,
+    shape: Shape,
     eye: FloatArray,
     colour: str,
     values: FloatArray | None,
@@ -132,7 +132,7 @@ def coloured_film(
 
 
 def loop_colours(
-    shape: StoredShape, values: FloatArray | None, scale: Scale | None
+    shape: Shape, values: FloatArray | None, scale: Scale | None
 ) -> FloatArray:
     """Return the loop's colours (n_b, 3): those of a field that lives there, or dark."""
     if values is None or scale is None or not _on_loop_only(shape, values):
@@ -141,7 +141,7 @@ def loop_colours(
 
 
 def _base(
-    shape: StoredShape,
+    shape: Shape,
     colour: str,
     values: FloatArray | None,
     scale: Scale | None,
@@ -158,13 +158,13 @@ def _base(
     return np.repeat(plain[:, None, :], 3, axis=1)
 
 
-def _on_loop_only(shape: StoredShape, values: FloatArray) -> bool:
+def _on_loop_only(shape: Shape, values: FloatArray) -> bool:
     inside = np.ones(len(values), dtype=bool)
     inside[shape.loop] = False
     return not bool(np.isfinite(values[inside]).any())
 
 
-def _continued(shape: StoredShape, values: FloatArray) -> FloatArray:
+def _continued(shape: Shape, values: FloatArray) -> FloatArray:
     """Return `values` (n_v,), the missing ones replaced by the mean of their neighbours.
 
     So a field that exists inside only fills the triangles at the loop too. Two rounds: a
@@ -183,7 +183,7 @@ def _continued(shape: StoredShape, values: FloatArray) -> FloatArray:
     return np.where(np.isfinite(filled), filled, 0.0)
 
 
-def _far_to_near(shape: StoredShape, eye: FloatArray) -> IntArray:
+def _far_to_near(shape: Shape, eye: FloatArray) -> IntArray:
     depth = shape.x[shape.triangles].mean(axis=1) @ eye
     order: IntArray = np.argsort(depth, kind="stable")
     return order

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh import write_whole
+from eulerplateau.mesh import Shape, write_whole
 from eulerplateau.pictures.alignment import aligned, settled_runs
 from eulerplateau.pictures.render.choice import chosen_steps
 from eulerplateau.pictures.render.colours import (
@@ -23,7 +23,7 @@ from eulerplateau.pictures.render.fields import read_field
 from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
 from eulerplateau.pictures.view import View, common_view, turning_views
-from eulerplateau.runs import Run, StoredShape, read_run
+from eulerplateau.runs import Run, read_run
 
 _WIDTH, _FRAME_WIDTH = 1200, 640
 _TURN_FRAMES = 48
@@ -46,7 +46,7 @@ class RunPictures:
     """
 
     run: Run
-    shapes: tuple[StoredShape, ...]
+    shapes: tuple[Shape, ...]
     places: tuple[int, ...]
     colour: str
     fields: dict[int, FloatArray]
@@ -80,7 +80,7 @@ class RunPictures:
         with Scene(_WIDTH) as scene:
             for place in self.places:
                 images.append(self._picture(scene, place, shapes[place], view))
-                self._write(f"shape_{shapes[place].step:04d}", "png", png(images[-1]))
+                self._write(f"shape_{self._step(place):04d}", "png", png(images[-1]))
         if len(images) > 1:
             self._write("sheet", "png", contact_sheet(images))
 
@@ -93,7 +93,7 @@ class RunPictures:
                 shape = shapes[place]
                 frames = [self._picture(scene, place, shape, view) for view in views]
                 content = gif(frames, [_MILLISECONDS] * len(frames))
-                self._write(f"turn_{shape.step:04d}", "gif", content)
+                self._write(f"turn_{self._step(place):04d}", "gif", content)
 
     def sweep(self) -> None:
         """Draw sweep.gif: the shapes in sequence, held where a branch or leg ends."""
@@ -107,7 +107,10 @@ class RunPictures:
         times = [_HOLD if place in ends else _MILLISECONDS for place in self.places]
         self._write("sweep", "gif", gif(frames, times))
 
-    def _picture(self, scene: Scene, place: int, shape: StoredShape, view: View) -> Pixels:
+    def _step(self, place: int) -> int:
+        return self.run.rows[place].step
+
+    def _picture(self, scene: Scene, place: int, shape: Shape, view: View) -> Pixels:
         values = self.fields.get(place)
         film = coloured_film(shape, view.eye, self.colour, values, self.scale)
         pixels = scene.pixels(shape, film, loop_colours(shape, values, self.scale), view)
@@ -123,19 +126,10 @@ class RunPictures:
         write_whole(pictures / f"{coloured}.{suffix}", content)
 
 
-def _followed(run: Run) -> tuple[StoredShape, ...]:
+def _followed(run: Run) -> tuple[Shape, ...]:
     """Return the shapes of a run, each turned as little as can be from the one before."""
     found = run.shapes()
     (x,) = settled_runs([(run.series, found.x)], found.loop)
     return tuple(
-        StoredShape(
-            own,
-            found.triangles(place),
-            found.loop,
-            row.step,
-            row.kL3_alpha,
-            row.sigma_hat,
-            row.energy,
-        )
-        for place, (row, own) in enumerate(zip(run.rows, x, strict=True))
+        Shape(own, found.triangles(place), found.loop) for place, own in enumerate(x)
     )

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh import Shape
 from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.pictures.render.colours import PaintedFilm
 from eulerplateau.pictures.view import ASPECT, LOOP_RADIUS, UP, View
-from eulerplateau.runs import StoredShape
 
 Pixels = NDArray[np.uint8]
 _GLOSS = {"ambient": 0.35, "diffuse": 0.65, "specular": 0.3}
@@ -52,7 +52,7 @@ class Scene:
         self._plotter.close()
 
     def pixels(
-        self, shape: StoredShape, film: PaintedFilm, loop_rgb: FloatArray, view: View
+        self, shape: Shape, film: PaintedFilm, loop_rgb: FloatArray, view: View
     ) -> Pixels:
         """Return an image (height, width, 3) of the film and its loop (n_b, 3 colours)."""
         plotter = self._plotter
@@ -84,7 +84,7 @@ def _surface(film: PaintedFilm) -> Any:
     return surface
 
 
-def _tube(shape: StoredShape, rgb: FloatArray) -> Any:
+def _tube(shape: Shape, rgb: FloatArray) -> Any:
     import pyvista
 
     # The wire passes its first edge twice: where the ends of VTK's tube meet end to end,

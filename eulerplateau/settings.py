@@ -7,22 +7,27 @@ import json
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, TypeVar, cast, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from eulerplateau.errors import OutputError, SpecError
 
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass as _ModelClass
+else:
+    _ModelClass = type(BaseModel)
+
 _LONGEST_QUOTE = 60
 
 
-class _Checked(type(BaseModel)):  # type: ignore[misc]
+class _Checked(_ModelClass):
     """Classes whose instances made in Python are checked as if read from TOML."""
 
-    def __call__(cls, **data: Any) -> Any:
+    def __call__(self, **data: Any) -> Any:
         """Return an instance; raises SpecError, as `validate` does."""
-        return validate(data, cls, cls.__name__)
+        return validate(data, cast(type[Settings], self), self.__name__)
 
 
 class Settings(BaseModel, metaclass=_Checked):

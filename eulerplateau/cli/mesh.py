@@ -22,9 +22,9 @@ def mesh(spec: Path, output: Path, quiet: bool) -> None:
 
     SPEC may also be a mesh file, which is then checked and converted.
     """
-    from eulerplateau.mesh import load_mesh, write_mesh
+    from eulerplateau.mesh import read_disk, write_mesh
 
-    made = load_mesh(spec)
+    made = read_disk(spec)
     write_mesh(made, output)
     if not quiet:
         click.echo(

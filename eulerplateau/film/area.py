@@ -20,7 +20,7 @@ from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
 from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
-from eulerplateau.mesh import DiskMesh, Shape
+from eulerplateau.mesh import Disk, Shape
 
 # Tilings whose patterns are kept: of a sweep on a few meshes none is planned twice.
 _KEPT = 4
@@ -208,6 +208,6 @@ class Area(Term):
         return self.local.holds(self.local.relax(x).sides)
 
 
-def area(disk: DiskMesh) -> AreaFilm:
+def area(disk: Disk) -> AreaFilm:
     """Return the true soap film on a disk."""
     return AreaFilm(disk.loop, disk.interior)

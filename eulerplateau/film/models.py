@@ -9,10 +9,10 @@ from eulerplateau.film.load import FILM_LOADS
 
 if TYPE_CHECKING:
     from eulerplateau.film.protocol import Film
-    from eulerplateau.mesh import DiskMesh
+    from eulerplateau.mesh import Disk
 
 
-def make_film(disk: DiskMesh, model: str = "springs", *, in_plane: bool = False) -> Film:
+def make_film(disk: Disk, model: str = "springs", *, in_plane: bool = False) -> Film:
     """Return the film of a disk: "springs", "dirichlet" or "area".
 
     Only what that film needs is loaded. `in_plane` keeps a film of true area in the plane

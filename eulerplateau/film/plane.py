@@ -17,7 +17,7 @@ from eulerplateau.film.harmonic import follower
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.plane_mesh import carry_in_plane
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
-from eulerplateau.mesh import DiskMesh, Shape, polygon_area
+from eulerplateau.mesh import Disk, Shape, polygon_area
 
 # A loop whose extent across its mean plane is a smaller part of the largest is flat.
 _FLAT = 1e-9
@@ -178,7 +178,7 @@ def polygon_gradient(x: FloatArray) -> FloatArray:
     return 0.5 * np.column_stack([chord[:, 1], -chord[:, 0]])
 
 
-def plane_film(disk: DiskMesh) -> PlaneFilm:
+def plane_film(disk: Disk) -> PlaneFilm:
     """Return the film that stays in the plane of a disk; MeshError if the loop has none."""
     loop = disk.x[disk.loop] - disk.x[disk.loop].mean(axis=0)
     _, extents, axes = np.linalg.svd(loop, full_matrices=False)

@@ -14,7 +14,7 @@ from eulerplateau.film.condensation import Condensation, condense
 from eulerplateau.film.load import SPRING_LOAD, TENSION, Load
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible
 from eulerplateau.loop.kernels import film_energy_gradient
-from eulerplateau.mesh import DiskMesh, Shape, cotangents
+from eulerplateau.mesh import Disk, Shape, cotangents
 
 # Cotangents are as large as a triangle is thin; of this size they leave the weights of the
 # triangles around it four digits.
@@ -167,14 +167,14 @@ class Stiffness(Term):
         return 2 * (self.stiffness @ x) if parameter == "load" else None
 
 
-def springs(mesh: DiskMesh) -> QuadraticFilm:
+def springs(mesh: Disk) -> QuadraticFilm:
     """Return the paper's film: one zero-rest-length spring per interior edge."""
     edges = mesh.interior_edges
     weights = np.ones(len(edges))
     return QuadraticFilm(edges, weights, mesh.shape, mesh.interior, SPRING_LOAD)
 
 
-def dirichlet(mesh: DiskMesh) -> QuadraticFilm:
+def dirichlet(mesh: Disk) -> QuadraticFilm:
     """Return Dirichlet's energy of the map from the rest mesh: cotangent weights.
 
     With the load sigma_hat, sigma_hat sum_e w_e |e|^2 = sigma_hat/2 int |grad x|^2 dA for x

@@ -1,6 +1,11 @@
 from .curvature import angle_defects as angle_defects, loop_frame as loop_frame
-from .disk import DiskMesh as DiskMesh
-from .files import load_mesh as load_mesh, read_mesh as read_mesh, write_mesh as write_mesh
+from .disk import Disk as Disk, DiskMesh as DiskMesh
+from .files import (
+    load_mesh as load_mesh,
+    read_disk as read_disk,
+    read_mesh as read_mesh,
+    write_mesh as write_mesh,
+)
 from .generation import generate as generate
 from .making import mesh_polygon as mesh_polygon
 from .measures import Measurer as Measurer, Measures as Measures, measure as measure

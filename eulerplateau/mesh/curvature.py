@@ -16,7 +16,7 @@ import numpy as np
 from scipy.sparse import coo_array
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import area_vectors, unit
 
 # Added to the normal equations of the quadric fit, whose entries are of order 1: keeps
@@ -63,7 +63,7 @@ class LoopFrame:
     mean_lengths: FloatArray
 
 
-def loop_frame(mesh: DiskMesh, x: FloatArray) -> LoopFrame:
+def loop_frame(mesh: Disk, x: FloatArray) -> LoopFrame:
     """Return the frame and curvatures of the loop of the shape `x` (n_v, 3), in units of L.
 
     Curvature as in eq. discrete-energy; kappa_n, kappa_g and the contact angle as in
@@ -94,7 +94,7 @@ def loop_frame(mesh: DiskMesh, x: FloatArray) -> LoopFrame:
     )
 
 
-def angle_defects(mesh: DiskMesh, x: FloatArray) -> FloatArray:
+def angle_defects(mesh: Disk, x: FloatArray) -> FloatArray:
     """Return (n_v,) 2 pi - (sum of the angles at an interior vertex); on the loop pi - sum.
 
     They sum to 2 pi on every shape, however crumpled: discrete Gauss-Bonnet.
@@ -109,12 +109,12 @@ def angle_defects(mesh: DiskMesh, x: FloatArray) -> FloatArray:
     return full - np.bincount(mesh.triangles.ravel(), angles.ravel(), minlength=mesh.n_v)
 
 
-def total_gauss_curvature(mesh: DiskMesh, x: FloatArray) -> float:
+def total_gauss_curvature(mesh: Disk, x: FloatArray) -> float:
     """Return <K>, the integral of K dA: the sum of the interior angle defects."""
     return float(angle_defects(mesh, x)[mesh.interior].sum())
 
 
-def gauss_curvature_from_loop(mesh: DiskMesh, x: FloatArray) -> float:
+def gauss_curvature_from_loop(mesh: Disk, x: FloatArray) -> float:
     """Return 2 pi minus the contour integral of kappa_g: <K> as seen from the loop alone.
 
     Its error is of second order in the edge length; that of `total_gauss_curvature` is of
@@ -124,7 +124,7 @@ def gauss_curvature_from_loop(mesh: DiskMesh, x: FloatArray) -> float:
     return float(2.0 * np.pi - frame.kappa_g @ frame.mean_lengths)
 
 
-def _loop_normals(mesh: DiskMesh, x: FloatArray, tangent: FloatArray) -> FloatArray:
+def _loop_normals(mesh: Disk, x: FloatArray, tangent: FloatArray) -> FloatArray:
     """Return the film's unit normals (n_b, 3) on the loop, perpendicular to `tangent`.
 
     Over the plane of the area-weighted mean normal of the incident triangles, heights of
@@ -159,7 +159,7 @@ def _loop_normals(mesh: DiskMesh, x: FloatArray, tangent: FloatArray) -> FloatAr
     return unit(mean - quadric[:, 1:2] * across)
 
 
-def _second_ring(mesh: DiskMesh) -> tuple[IntArray, IntArray]:
+def _second_ring(mesh: Disk) -> tuple[IntArray, IntArray]:
     """Return the vertices at most two edges from each loop vertex, itself left out.
 
     Returns

@@ -34,7 +34,7 @@ _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
-class DiskMesh:
+class Disk:
     """A checked triangulated disk in units of the length L of its loop.
 
     Attributes
@@ -58,7 +58,7 @@ class DiskMesh:
     length: float
 
     @classmethod
-    def from_triangles(cls, points: ArrayLike, triangles: ArrayLike) -> DiskMesh:
+    def from_triangles(cls, points: ArrayLike, triangles: ArrayLike) -> Disk:
         """Check `points` (n_v, 3), in any unit, and `triangles` (n_t, 3); scale to L = 1.
 
         Logs a warning if the mesh lies so far from the origin that digits are lost. Raises
@@ -85,7 +85,7 @@ class DiskMesh:
         length = float(np.ldexp(total, exponent))
         return cls(centred / total, corners, loop, lengths / total, length)
 
-    def with_triangles(self, triangles: IntArray) -> DiskMesh:
+    def with_triangles(self, triangles: IntArray) -> Disk:
         """Return the mesh with other triangles (n_t, 3) on the same vertices and loop.
 
         Inside, vertices rest where each is the mean of its neighbours (Tutte 1963), which
@@ -242,3 +242,6 @@ def _refuse_edge(edges: IntArray, mask: ArrayLike, problem: str) -> None:
     if wrong.any():
         start, end = edges[np.flatnonzero(wrong)[0]]
         raise MeshError("edge", (int(start), int(end)), problem)
+
+
+DiskMesh = Disk

@@ -1,4 +1,4 @@
-"""Mesh files, made here or elsewhere, and their one way into a `DiskMesh`."""
+"""Mesh files, made here or elsewhere, and their one way into a `Disk`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError, SpecError
 from eulerplateau.mesh import formats
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.generation import generate
 from eulerplateau.mesh.spec import MeshSpec
 from eulerplateau.mesh.whole_files import whole_file
@@ -28,7 +28,7 @@ _FORMATS = {
 }
 
 
-def load_mesh(path: str | Path) -> DiskMesh:
+def read_disk(path: str | Path) -> Disk:
     """Return the mesh that `path` describes (.toml) or holds (any other extension).
 
     Raises what `generate` and `read_mesh` raise.
@@ -38,7 +38,7 @@ def load_mesh(path: str | Path) -> DiskMesh:
     return read_mesh(path)
 
 
-def read_mesh(path: str | Path) -> DiskMesh:
+def read_mesh(path: str | Path) -> Disk:
     """Read a triangulated disk from a .vtp .msh .vtu .vtk .off .ply .stl .obj .glb file.
 
     Points and lines in the file, and vertices that no triangle uses, are left out. The
@@ -59,7 +59,7 @@ def read_mesh(path: str | Path) -> DiskMesh:
         raise MeshError("triangle", first, problem)
     used, renumbered = np.unique(triangles, return_inverse=True)
     try:
-        return DiskMesh.from_triangles(points[used], renumbered.reshape(-1, 3))
+        return Disk.from_triangles(points[used], renumbered.reshape(-1, 3))
     except MeshError as error:
         raise _named_as_in_file(error, used, path) from None
 
@@ -88,7 +88,7 @@ def read_triangles(path: str | Path) -> tuple[FloatArray, IntArray]:
         raise MeshError("mesh", None, problem) from error
 
 
-def write_mesh(mesh: DiskMesh, path: str | Path) -> None:
+def write_mesh(mesh: Disk, path: str | Path) -> None:
     """Write `mesh` at its physical size, `mesh.x * mesh.length`; whole or not at all.
 
     .vtp .msh .vtu .vtk .off .ply .obj keep every bit, .stl and .glb single precision.
@@ -120,3 +120,6 @@ def _named_as_in_file(error: MeshError, used: IntArray, path: str | Path) -> Mes
         index = (int(used[index[0]]), int(used[index[1]]))
     problem = str(error).partition(": ")[2]
     return MeshError(error.kind, index, f"{problem} (in {path})")
+
+
+load_mesh = read_disk

@@ -10,7 +10,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, MissingLibraryError, SpecError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.polygon import perimeter, polygon_area, subdivide, to_unit_scale
 from eulerplateau.mesh.spec import MeshSpec
 
@@ -38,11 +38,11 @@ _OPTIONS = {
 }
 
 
-def generate(spec: MeshSpec) -> DiskMesh:
+def generate(spec: MeshSpec) -> Disk:
     """Triangulate `spec.polygon`; equal specs give equal meshes, bit for bit.
 
     The loop's vertices come first, counter-clockwise, evenly spaced along each side.
-    Positions are in the polygon's units before DiskMesh scales them.
+    Positions are in the polygon's units before Disk scales them.
 
     Raises SpecError if the size asked for cannot be had, MeshError if Gmsh fails, and
     MissingLibraryError if Gmsh cannot be loaded.
@@ -53,7 +53,7 @@ def generate(spec: MeshSpec) -> DiskMesh:
             points, triangles = _triangulate(gmsh, spec, spec.edge_length, spec.edge_length)
         else:
             points, triangles = _meet_target(gmsh, spec, spec.vertices or _PAPER_VERTICES)
-    mesh = DiskMesh.from_triangles(points, triangles)
+    mesh = Disk.from_triangles(points, triangles)
     if len(mesh.interior) == 0:
         key = "vertices" if spec.edge_length is None else "edge_length"
         raise SpecError(key, "leaves no vertex inside the loop: ask for a finer mesh")

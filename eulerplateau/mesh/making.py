@@ -10,7 +10,7 @@ from eulerplateau.mesh.spec import ALGORITHMS, MeshSpec
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from eulerplateau.mesh.disk import DiskMesh
+    from eulerplateau.mesh.disk import Disk
 
 
 def mesh_polygon(
@@ -21,7 +21,7 @@ def mesh_polygon(
     algorithm: int | str = ALGORITHMS["frontal-delaunay"],
     grading: float = 1.0,
     **shape: Any,
-) -> DiskMesh:
+) -> Disk:
     """Return the triangulated disk that a polygon bounds, made by Gmsh.
 
     Parameters

@@ -13,7 +13,7 @@ from eulerplateau.mesh.curvature import (
     loop_frame,
     total_gauss_curvature,
 )
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.mesh.triangles import (
     area_vectors,
@@ -63,11 +63,11 @@ class Measurer:
     where a shape has others than the one before.
     """
 
-    def __init__(self, disk: DiskMesh) -> None:
+    def __init__(self, disk: Disk) -> None:
         self._disk = disk
         self._path = waist_path(disk)
 
-    def disk_of(self, shape: Shape) -> DiskMesh:
+    def disk_of(self, shape: Shape) -> Disk:
         """Return the disk with a shape's triangles."""
         if shape.triangles is not self._disk.triangles:
             self._disk = self._disk.with_triangles(shape.triangles)
@@ -96,7 +96,7 @@ class Measurer:
         )
 
 
-def measure(disk: DiskMesh, shape: Shape) -> Measures:
+def measure(disk: Disk, shape: Shape) -> Measures:
     """Measure a shape of a disk, in units of L.
 
     Raises MeshError of kind "vertex" if a coordinate is not finite.
@@ -104,7 +104,7 @@ def measure(disk: DiskMesh, shape: Shape) -> Measures:
     return Measurer(disk).measure(shape)
 
 
-def aspect(mesh: DiskMesh, x: FloatArray) -> float:
+def aspect(mesh: Disk, x: FloatArray) -> float:
     """Return the short over the long axis, in [0, 1], of the ellipse the film resembles.
 
     That is the square root of the ratio of the two largest second moments of the film's

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.distance import pdist
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import area_vectors, unit
 
 # Lengths, in units of L, that count as zero when the rest polygon is cut by a line: above
@@ -74,7 +74,7 @@ def waist_twist(path: WaistPath | None, x: FloatArray) -> float:
     return highest if highest >= -lowest - _SAME_TWIST else lowest
 
 
-def waist_path(mesh: DiskMesh) -> WaistPath | None:
+def waist_path(mesh: Disk) -> WaistPath | None:
     """Return the path for `waist_twist`, or None if the rest mesh has none.
 
     It has none if it is not planar, or if a line leaves the polygon. Where a
@@ -97,7 +97,7 @@ def waist_path(mesh: DiskMesh) -> WaistPath | None:
 
 
 def _line(
-    mesh: DiskMesh, up: FloatArray, start: int, end: int
+    mesh: Disk, up: FloatArray, start: int, end: int
 ) -> tuple[IntArray, FloatArray] | None:
     """Return what a line crosses, as in WaistPath; None if it leaves the polygon."""
     offset = mesh.x - mesh.x[start]
@@ -123,7 +123,7 @@ def _line(
     return corners[order], weights[order]
 
 
-def _farthest_pairs(mesh: DiskMesh) -> list[tuple[int, int]]:
+def _farthest_pairs(mesh: Disk) -> list[tuple[int, int]]:
     """Return the pairs of loop vertices farthest apart, all among equals."""
     distances = pdist(mesh.x[mesh.loop])
     equals = distances >= distances.max() - _ON_LINE

@@ -19,7 +19,7 @@ from eulerplateau.branches import (
     first_equilibrium,
 )
 from eulerplateau.errors import SpecError
-from eulerplateau.mesh import DiskMesh, write_whole
+from eulerplateau.mesh import Disk, write_whole
 from eulerplateau.runs.recording import make_mesh, recording
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.sweep import start_shape, stored_start
@@ -105,7 +105,7 @@ def _window(spec: RunSpec) -> tuple[float, float]:
 
 
 def _start(
-    spec: RunSpec, disk: DiskMesh, problem: Problem, window: tuple[float, float]
+    spec: RunSpec, disk: Disk, problem: Problem, window: tuple[float, float]
 ) -> Equilibrium:
     stored, shape = stored_start(spec, disk), start_shape(spec, disk)
     if stored is None:

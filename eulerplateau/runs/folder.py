@@ -14,7 +14,7 @@ from types import TracebackType
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh import DiskMesh, write_whole
+from eulerplateau.mesh import Disk, write_whole
 from eulerplateau.runs.shape_files import write_series, write_shape
 from eulerplateau.runs.table import Row, RowWriter
 
@@ -81,7 +81,7 @@ class RunFolder:
     def record(
         self,
         row: Row,
-        mesh: DiskMesh,
+        mesh: Disk,
         x: FloatArray,
         modes: Mapping[str, FloatArray] | None = None,
         rest_mesh: str | None = None,

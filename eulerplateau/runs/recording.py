@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from eulerplateau import __version__
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FILM_LOADS, Load
-from eulerplateau.mesh import DiskMesh, Measurer, generate, load_mesh
+from eulerplateau.mesh import Disk, Measurer, generate, read_disk
 from eulerplateau.runs.folder import RunFolder
 from eulerplateau.runs.spec import RunSpec, StoredMesh
 from eulerplateau.runs.table import Row
@@ -66,7 +66,7 @@ class Recorder(Generic[R]):
 
 @contextmanager
 def recording(
-    spec: RunSpec, disk: DiskMesh, path: Path, name: str, row_type: type[R], started: float
+    spec: RunSpec, disk: Disk, path: Path, name: str, row_type: type[R], started: float
 ) -> Iterator[Recorder[R]]:
     """Open the folder `path` for a run whose table is `name`.csv, and close it.
 
@@ -95,14 +95,14 @@ def blas_threads() -> list[int]:
     return [pool["num_threads"] for pool in pools if pool["user_api"] == "blas"]
 
 
-def make_mesh(spec: RunSpec) -> DiskMesh:
+def make_mesh(spec: RunSpec) -> Disk:
     """Read or generate the mesh of a run."""
     if isinstance(spec.mesh, StoredMesh):
-        return load_mesh(Path(spec.mesh.file))
+        return read_disk(Path(spec.mesh.file))
     return generate(spec.mesh)
 
 
-def describe(spec: RunSpec, mesh: DiskMesh) -> dict[str, Any]:
+def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
     """Return what run.json says before anything is computed.
 
     B and E are the loop's and all edges, from which the paper's sigma = 4 sqrt(3) k /

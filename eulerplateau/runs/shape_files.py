@@ -20,7 +20,7 @@ from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError
 from eulerplateau.film import Load
 from eulerplateau.mesh import (
-    DiskMesh,
+    Disk,
     Shape,
     angle_defects,
     loop_frame,
@@ -82,7 +82,7 @@ class ShapeSequence:
 
 def write_shape(
     path: Path,
-    mesh: DiskMesh,
+    mesh: Disk,
     x: FloatArray,
     row: Row,
     modes: Mapping[str, FloatArray] | None = None,
@@ -191,7 +191,7 @@ def write_series(path: Path, shapes: Sequence[tuple[int, float, str]], load: Loa
     write_whole(path, content.encode("utf-8"))
 
 
-def _point_fields(mesh: DiskMesh, x: FloatArray) -> dict[str, NDArray[Any]]:
+def _point_fields(mesh: Disk, x: FloatArray) -> dict[str, NDArray[Any]]:
     frame = loop_frame(mesh, x)
     fields: dict[str, NDArray[Any]] = {}
     for name in _LOOP_FIELDS:

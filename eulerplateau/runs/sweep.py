@@ -9,7 +9,7 @@ from pathlib import Path
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
-from eulerplateau.mesh import DiskMesh, Shape
+from eulerplateau.mesh import Disk, Shape
 from eulerplateau.runs.recording import make_mesh, not_converged, recording
 from eulerplateau.runs.shape_files import StoredShape, read_shape
 from eulerplateau.runs.spec import RunSpec
@@ -73,7 +73,7 @@ def run_sweep(
     return RunResult(path, tuple(rows), tuple(neutral), recorder.seconds)
 
 
-def start_shape(spec: RunSpec, disk: DiskMesh) -> Shape:
+def start_shape(spec: RunSpec, disk: Disk) -> Shape:
     """Return the first shape of a run: the disk, or a stored shape, displaced.
 
     Raises SpecError if the stored shape belongs to another mesh at rest.
@@ -85,7 +85,7 @@ def start_shape(spec: RunSpec, disk: DiskMesh) -> Shape:
     return stored.moved(stored.x + (x - disk.x))
 
 
-def stored_start(spec: RunSpec, disk: DiskMesh) -> StoredShape | None:
+def stored_start(spec: RunSpec, disk: Disk) -> StoredShape | None:
     """Return the shape that start.file names, None without one; raises SpecError."""
     if spec.start.file is None:
         return None

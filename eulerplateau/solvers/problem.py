@@ -16,7 +16,7 @@ from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.film import Film, make_film
 from eulerplateau.loop import Loop, kernels, remove_sliding
-from eulerplateau.mesh import DiskMesh, Shape
+from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers.equilibrium import (
     LARGEST_LOAD,
     RESOLVED_TURNING,
@@ -38,19 +38,19 @@ class Problem:
     film, loop : the two energies
     """
 
-    disk: DiskMesh
+    disk: Disk
     film: Film
     loop: Loop
 
     def __init__(
-        self, disk: DiskMesh, film: str | Film = "springs", *, in_plane: bool = False
+        self, disk: Disk, film: str | Film = "springs", *, in_plane: bool = False
     ) -> None:
         """Span a disk by a film: "springs", "dirichlet", "area", or a film of one's own.
 
         `in_plane` keeps a film of true area in the plane of its disk. Raises SpecError for
         an unknown film, MeshError for a disk that cannot carry it.
         """
-        if not isinstance(disk, DiskMesh):
+        if not isinstance(disk, Disk):
             problem = f"found {type(disk).__name__}; read_disk and mesh_polygon return one"
             raise SpecError("disk", problem)
         made = make_film(disk, film, in_plane=in_plane) if isinstance(film, str) else film

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import Disk
 
 _SIZE = 1e-3
 
@@ -28,7 +28,7 @@ def smooth_kick(
     return np.outer(height * (_SIZE / np.abs(height).max()), axes[axis])
 
 
-def displaced(mesh: DiskMesh, displacement: float, seed: int) -> FloatArray:
+def displaced(mesh: Disk, displacement: float, seed: int) -> FloatArray:
     """Return the mesh with every vertex displaced at random across its mean plane."""
     centred = mesh.x[mesh.loop] - mesh.x[mesh.loop].mean(axis=0)
     across = np.linalg.svd(centred)[2][2]

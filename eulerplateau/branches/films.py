@@ -27,6 +27,7 @@ from eulerplateau.solvers import (
     Problem,
     Status,
     solve,
+    stepwise,
 )
 
 # Unresolved is no obstacle: the rows say so.
@@ -57,7 +58,7 @@ class FilmFamily:
         return self if film is self.film else replace(self, film=film)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FilmPoint(DiagramPoint):
     """A point of a film's diagram."""
 
@@ -191,5 +192,8 @@ def explore(
 def _explored(
     problem: Problem, found: Equilibrium, control: StepControl, limits: Limits
 ) -> Iterator[FilmPoint]:
-    for visited in explore_from(film_point(found, problem, control), control, limits):
+    def explored() -> Iterator[DiagramPoint]:
+        return explore_from(film_point(found, problem, control), control, limits)
+
+    for visited in stepwise(explored):
         yield FilmPoint(**vars(visited))

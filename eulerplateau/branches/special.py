@@ -52,7 +52,7 @@ _LEVEL = 0.02
 _LEVELLED = 0.25
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SpecialPoint:
     """A point where an eigenvalue of the second variation vanishes.
 
@@ -81,6 +81,17 @@ class SpecialPoint:
     multiplicity: int
     symmetry: ModeSymmetry
     arrived: bool = False
+
+    @property
+    def breaks(self) -> tuple[str, ...]:
+        """The symmetries that are lost along the critical displacement."""
+        return self.symmetry.breaks
+
+    def __repr__(self) -> str:
+        """Return one line: the kind, the parameter with its error, what breaks."""
+        broken = ", ".join(self.breaks) or "nothing"
+        value = f"{self.point.value:.8g} +- {self.error:.1g}"
+        return f"<SpecialPoint: {self.kind} at {value}, breaks {broken}>"
 
 
 def special_points(

@@ -33,7 +33,7 @@ _FAR = 1e-11 / (100 * float(np.finfo(np.float64).eps))
 _log = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Disk:
     """A checked triangulated disk in units of the length L of its loop.
 
@@ -56,6 +56,11 @@ class Disk:
     loop: IntArray
     rest_lengths: FloatArray
     length: float
+
+    def __repr__(self) -> str:
+        """Return one line: how many vertices, triangles and loop vertices, and L."""
+        sizes = f"{self.n_v} vertices, {len(self.triangles)} triangles"
+        return f"<Disk: {sizes}, {self.n_b} on the loop, length {self.length:.6g}>"
 
     @classmethod
     def from_triangles(cls, points: ArrayLike, triangles: ArrayLike) -> Disk:

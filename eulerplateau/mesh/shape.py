@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from eulerplateau.arrays import FloatArray, IntArray
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Shape:
     """A triangulated surface bounded by a loop; lengths in units of L.
 
@@ -23,6 +23,11 @@ class Shape:
     x: FloatArray
     triangles: IntArray
     loop: IntArray
+
+    def __repr__(self) -> str:
+        """Return one line: how many vertices, triangles and loop vertices."""
+        sizes = f"{len(self.x)} vertices, {len(self.triangles)} triangles"
+        return f"<Shape: {sizes}, {len(self.loop)} vertices on the loop>"
 
     @property
     def x_loop(self) -> FloatArray:

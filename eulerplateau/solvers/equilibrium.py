@@ -89,7 +89,7 @@ class Stability:
         return float(self.eigenvalues[0]) if len(self.eigenvalues) else np.inf
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Equilibrium:
     """An equilibrium, or the best a solver reached. Units: lengths L, energies alpha/L.
 

@@ -15,6 +15,7 @@ from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.start import displaced
+from eulerplateau.solvers.threads import one_thread
 
 # By the names of solver.name in a run's specification; only the one asked for is loaded.
 SOLVERS = {"newton": "newton", "cg": "conjugate_gradient"}
@@ -76,7 +77,8 @@ def solve(
         known = _tensions(problem, tensions)
     minimise = _named(solver)
     show = (lambda x_loop: None) if observe is None else observe
-    return minimise(problem, _load(load), shape, known, _limit(max_iterations), show)
+    with one_thread():
+        return minimise(problem, _load(load), shape, known, _limit(max_iterations), show)
 
 
 def sweep(
@@ -107,7 +109,8 @@ def _swept(
     limit: int | None,
 ) -> Iterator[Equilibrium]:
     for load in loads:
-        found = minimise(problem, load, shape, tensions, limit, lambda x_loop: None)
+        with one_thread():
+            found = minimise(problem, load, shape, tensions, limit, lambda x_loop: None)
         yield found
         if np.isfinite(found.shape.x).all():
             shape, tensions = found.shape, found.tensions

@@ -1,4 +1,4 @@
-"""Draw in a child process: a crash in a graphics driver costs a picture, not the run."""
+"""Render in a child process: a crash in a graphics driver costs a picture, not the run."""
 
 from __future__ import annotations
 

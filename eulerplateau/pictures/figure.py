@@ -27,6 +27,7 @@ ABS_KAPPA_N = r"$\langle|\kappa_n|\rangle=\oint|\kappa_n|\,ds$"
 BLACK, BLUE, ORANGE, GREEN = "#000000", "#0072B2", "#E69F00", "#009E73"
 VERMILION, PURPLE, SKY = "#D55E00", "#CC79A7", "#56B4E9"
 
+# A file does not say when it was drawn: one run makes one file.
 _UNDATED: dict[str, dict[str, None]] = {
     "pdf": {"CreationDate": None},
     "svg": {"Date": None},

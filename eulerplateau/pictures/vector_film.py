@@ -20,9 +20,10 @@ if TYPE_CHECKING:
 
 _FRONT, _BACK, _LOOP = "#5BA4D9", "#FAD09C", "#1A1A1A"
 _LOOP_WIDTH = 1.0
-# A film seen edge-on keeps this part of its colour.
+# Part of its colour that a film keeps where it is seen edge-on.
 _DARKEST = 0.72
-# So many of its edge's lengths nearer to the eye, the loop hides the film's rim beside it.
+# The loop is painted as if it were so many of its edges' lengths nearer to the eye: then it
+# hides the rim of the film beside it.
 _NEARER = 1.0
 
 

@@ -1,4 +1,4 @@
-"""The camera: one view and one scale for all pictures of a run."""
+"""Where films are seen from: one view and one scale for all pictures of a run."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ UP = np.array([0.0, 0.0, 1.0])
 # Height over width of every picture.
 ASPECT = 0.75
 LOOP_RADIUS = 0.0035
-# From here the film is seen, if nothing is edge-on to it: slanted, from the front.
+# Where the eye is if nothing is edge-on to it: slanted, from the front.
 _EYE = np.array([0.2, -0.75, 0.65])
 _SLANTED = 0.4
-# An eye that sees this part of what the best one sees is as good.
+# Eyes that see this part of what the best one sees, or more, count as equally good.
 _ALMOST = 0.85
 _MARGIN = 1.28
-# The film is this part of the half height above the middle: below it is written.
+# The film is shown above the middle by this part of the half height: the caption is below.
 _RAISED = 0.1
 # A film that turns is seen from this height above its equator, in degrees.
 _TURN_HEIGHT = 35.0

@@ -1,4 +1,4 @@
-"""Pictures of the film: stills, contact sheets, animations, always in a child process.
+"""Have shapes of a run rendered, as stills or animations, by a child process.
 
 The film is blue on the side its normal points to and orange on the other, so that it is
 seen to turn over; the loop is a tube. All pictures of a run have one view and one scale.

@@ -1,4 +1,4 @@
-"""The fields a shape file holds beside its positions."""
+"""Read a field of a shape file, such as a curvature, to colour the film by."""
 
 from __future__ import annotations
 

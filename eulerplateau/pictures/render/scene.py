@@ -1,4 +1,4 @@
-"""The off-screen window: film and loop in, pixels out."""
+"""The window that nobody sees and VTK draws in: film and loop in, pixels out."""
 
 from __future__ import annotations
 

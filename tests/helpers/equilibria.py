@@ -7,14 +7,20 @@ from collections.abc import Iterable
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.lengths import project_lengths
-from eulerplateau.loop.loop import Loop
-from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers import newton
-from eulerplateau.solvers.condensed import loop_energy
-from eulerplateau.solvers.equilibrium import Status
-from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.second_variation import LoopEnergy, TangentModel, tangent_model
+from eulerplateau.loop import Loop, LoopEnergy
+from eulerplateau.mesh.shape import Shape
+from eulerplateau.solvers import Problem, Status, TangentModel, solve, tangent_model
+
+
+def loop_energy(problem: Problem, load: float, near: Shape | None = None) -> LoopEnergy:
+    """The energy of the loop alone, the film at rest near a shape, by default the disk."""
+    film = problem.film.of_loop(problem.disk.shape if near is None else near)
+    return film.energy(problem.loop, load)
+
+
+def spanned(problem: Problem, x_loop: FloatArray) -> Shape:
+    """The film at rest on a loop (n_b, 3), near the disk."""
+    return problem.film.of_loop(problem.disk.shape).shape(x_loop)
 
 
 def critical_point(energy: LoopEnergy, x_loop: FloatArray) -> TangentModel:
@@ -28,20 +34,20 @@ def critical_point(energy: LoopEnergy, x_loop: FloatArray) -> TangentModel:
             return model
         step = model.displacement(np.linalg.solve(model.hessian, -model.gradient))
         longest = np.linalg.norm(step, axis=1).max()
-        x = project_lengths(energy.loop, model.x + step * min(1.0, 0.01 / longest))
+        x = energy.constraint.project(model.x + step * min(1.0, 0.01 / longest))
         assert x is not None
         model = tangent_model(energy, x)
     raise AssertionError("no equilibrium reached")
 
 
-def planar(problem: Problem, mesh: DiskMesh, loads: Iterable[float]) -> list[TangentModel]:
+def planar(problem: Problem, loads: Iterable[float]) -> list[TangentModel]:
     """The planar equilibria of ascending loads, each from the last, stable or not.
 
     The first load has to be one at which the film stays in the plane.
     """
     loads = list(loads)
-    start = newton.solve(problem, mesh.x, np.zeros(mesh.n_b), loads[0])
-    x = start.x[mesh.loop] * [1.0, 1.0, 0.0]
+    start = solve(problem, loads[0], problem.disk.shape)
+    x = start.shape.x_loop * [1.0, 1.0, 0.0]
     found = []
     for load in loads:
         found.append(critical_point(loop_energy(problem, load), x))

@@ -8,26 +8,21 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches import FilmFamily, film_point
 from eulerplateau.branches.continuation import follow
-from eulerplateau.branches.point import (
-    BranchPoint,
-    Direction,
-    Settings,
-    correct,
-    first_point,
-)
+from eulerplateau.branches.point import BranchPoint, Direction, StepControl, correct
 from eulerplateau.branches.special import SpecialPoint, branches_from, special_points
-from eulerplateau.film.area import AreaFilm
+from eulerplateau.film.tiling import Tiling
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers import newton
-from eulerplateau.solvers.problem import Problem
+from eulerplateau.mesh.shape import Shape
+from eulerplateau.solvers import Problem, solve
 from tests.helpers import shapes
 
 # The disk gives way across its plane to cos 2 phi here (sigma_hat).
 DISK_TWISTS = 96 * np.pi**3
-SETTINGS = Settings(load_range=(1000.0, 4000.0), load_unit=2000.0)
-# Once a film's chart has been made at its own shape so often, the two agree to rounding.
-_CHARTS = 6
+CONTROL = StepControl(window=(1000.0, 4000.0), unit=2000.0)
+# Once a film has been made anew at its own shape so often, the two agree to rounding.
+_TIMES = 6
 
 
 def irregular_disk(rings: int, jitter: float = 0.15) -> DiskMesh:
@@ -37,12 +32,12 @@ def irregular_disk(rings: int, jitter: float = 0.15) -> DiskMesh:
     return shapes.mesh_of(points, triangles)
 
 
-def hessian(film: AreaFilm, x: FloatArray) -> csr_array:
+def hessian(tiling: Tiling, x: FloatArray) -> csr_array:
     """The area's Hessian (3 n_v, 3 n_v) at a shape; vertex v has rows 3 v ... 3 v + 2."""
-    i, k = film.pairs
+    i, k = tiling.pairs
     row = 3 * i[:, None, None] + np.arange(3)[:, None]
     column = 3 * k[:, None, None] + np.arange(3)
-    blocks = film.hessian(film.sides(x))
+    blocks = tiling.hessian(tiling.sides(x))
     row, column, blocks = np.broadcast_arrays(row, column, blocks)
     entries = (blocks.ravel(), (row.ravel(), column.ravel()))
     return csr_array(entries, shape=(x.size, x.size))
@@ -58,18 +53,22 @@ def two_lobed(mesh: DiskMesh, load: float, angle: float = 0.0) -> BranchPoint:
     """The planar two-lobed film, its long axis turned by `angle` against the mesh."""
     problem = Problem(mesh, "area")
     oval = turn(angle) @ np.diag([1.25, 0.8, 1.0]) @ turn(angle).T
-    found = newton.solve(problem, mesh.x @ oval, np.zeros(mesh.n_b), load)
+    found = solve(problem, load, mesh.x @ oval)
     assert found.converged
-    if found.triangles is not None:
-        problem = problem.with_triangles(found.triangles)
-    return first_point(problem.near(found.x), found.x[mesh.loop], load, SETTINGS)
+    return film_point(found, problem, CONTROL)
+
+
+def shape(point: BranchPoint) -> Shape:
+    """The whole film at a point of its branch."""
+    assert isinstance(point.family, FilmFamily)
+    return point.family.film.shape(point.x)
 
 
 def twist_point(planar: BranchPoint) -> SpecialPoint:
     """The first bifurcation above a point of the planar branch."""
     before = planar
-    for after in follow(planar, SETTINGS):
-        for special in special_points(before, after, SETTINGS):
+    for after in follow(planar, CONTROL):
+        for special in special_points(before, after, CONTROL):
             return special
         before = after
     raise AssertionError("no bifurcation met")
@@ -77,11 +76,11 @@ def twist_point(planar: BranchPoint) -> SpecialPoint:
 
 def twisted_from_two_lobed(special: SpecialPoint, load: float) -> BranchPoint:
     """The point of the branch that leaves the two-lobed film, at a load below."""
-    for point in follow(next(branches_from(special, SETTINGS)), SETTINGS):
-        if point.load < load:
+    for point in follow(next(branches_from(special, CONTROL)), CONTROL):
+        if point.value < load:
             break
-    still = Direction(np.zeros_like(point.x), SETTINGS.load_unit)
-    return _recharted(point, point.x, load, still)
+    still = Direction(np.zeros_like(point.x), CONTROL.unit)
+    return _made_anew(point, point.x, load, still)
 
 
 def twisted_disk(mesh: DiskMesh, size: float, angle: float = 0.0) -> BranchPoint:
@@ -89,34 +88,33 @@ def twisted_disk(mesh: DiskMesh, size: float, angle: float = 0.0) -> BranchPoint
 
     `size` is the r.m.s. displacement along cos 2 (phi - angle), in units of L.
     """
-    problem = Problem(mesh, "area").at(mesh.x)
+    problem = Problem(mesh, "area")
+    family = FilmFamily(problem, problem.film.of_loop(mesh.shape))
     circle = mesh.x[mesh.loop]
     phi = np.arctan2(circle[:, 1], circle[:, 0])
     mode = np.outer(np.cos(2 * (phi - angle)), [0.0, 0.0, 1.0])
     mode /= np.sqrt(problem.loop.mean_lengths @ (mode**2).sum(axis=1))
     along = Direction(mode, 0.0)
-    point = correct(problem, circle + size / 3 * mode, DISK_TWISTS, along, SETTINGS)
+    point = correct(family, circle + size / 3 * mode, DISK_TWISTS, along, CONTROL)
     assert point is not None
     for _ in range(2):
-        point = _recharted(point, point.x + size / 3 * mode, point.load, along)
+        point = _made_anew(point, point.x + size / 3 * mode, point.value, along)
     return point
 
 
-def _recharted(
+def _made_anew(
     point: BranchPoint, guess: FloatArray, load: float, direction: Direction
 ) -> BranchPoint:
-    """The equilibrium near a guess (n_b, 3), its chart made at the film itself."""
-    for _ in range(_CHARTS):
-        there = point.problem.at(point.film)
-        found = correct(there, guess, load, direction, SETTINGS)
+    """The equilibrium near a guess (n_b, 3), on a film made near the film itself."""
+    for _ in range(_TIMES):
+        there = point.family.near(point.x)
+        found = correct(there, guess, load, direction, CONTROL)
         assert found is not None
         point = replace(found, arclength=point.arclength)
-        guess, load = point.x, point.load
+        guess, load = point.x, point.value
     return point
 
 
 def mesh_of(point: BranchPoint, mesh: DiskMesh) -> DiskMesh:
     """The mesh with the triangles that the film of a point has come to."""
-    film = point.problem.film
-    assert isinstance(film, AreaFilm)
-    return replace(mesh, triangles=film.triangles)
+    return replace(mesh, triangles=shape(point).triangles)

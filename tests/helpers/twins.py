@@ -39,11 +39,11 @@ def constraint(mesh: DiskMesh, x: FloatArray) -> FloatArray:
 
 
 def lagrangian(
-    mesh: DiskMesh, x: FloatArray, load: float, multipliers: FloatArray, penalty: float
+    mesh: DiskMesh, x: FloatArray, load: float, tensions: FloatArray, penalty: float
 ) -> float:
     """Film, bending, sum_v lambda_v c_v and sum_v mu c_v^2 / (2 s_v)."""
     c = constraint(mesh, x)
-    held = multipliers @ c + penalty * (c**2 / (2 * mesh.rest_lengths)).sum()
+    held = tensions @ c + penalty * (c**2 / (2 * mesh.rest_lengths)).sum()
     return film_energy(mesh, x, load) + bending_energy(mesh, x) + float(held)
 
 

@@ -15,6 +15,7 @@ import pytest
 
 from eulerplateau.branches.special import BIFURCATION
 from eulerplateau.errors import OutputError, SpecError
+from eulerplateau.mesh import write_mesh
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.runs.exploration import SPECIAL_COLUMNS, Exploration, run_branches
@@ -22,6 +23,8 @@ from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.shape_files import read_shape
 from eulerplateau.runs.spec import RunSpec, load_run
 from eulerplateau.runs.table import BranchRow, read_rows
+from eulerplateau.settings import validate
+from tests.helpers.shapes import disk_points, mesh_of
 
 RUN = Path(__file__).parents[2] / "runs" / "elongated.toml"
 # From below the onset to where the planar film is unstable: one special point.
@@ -86,6 +89,52 @@ def test_critical_mode_is_in_the_shape_of_its_special_point(
             mode = np.asarray(data["critical_mode"])
             assert mode.shape == (elongated.n_v, 3)
             assert np.square(mode[:, 2]).sum() > 0.999 * np.square(mode).sum()
+
+
+@pytest.fixture(scope="module")
+def soap(tmp_path_factory: pytest.TempPathFactory) -> Exploration:
+    """A soap film's two lobes, on whose branch thin triangles are replaced, and its twist."""
+    folder = tmp_path_factory.mktemp("soap")
+    points, triangles = disk_points(6)
+    write_mesh(mesh_of(points * [1.3, 1.0], triangles), folder / "oval.vtp")
+    data = {
+        "mesh": {"file": str(folder / "oval.vtp")},
+        "film": {"model": "area"},
+        "sweep": {"loads": [1790.0, 2000.0]},
+        "branches": {"special_points": 1},
+    }
+    return run_branches(validate(data, RunSpec, "test"), folder / "out")
+
+
+def test_film_energy_is_the_tension_times_the_area_on_disk_whatever_the_triangles(
+    soap: Exploration,
+) -> None:
+    assert {row.branch for row in soap.rows} == {0, 1, 2}
+    for branch in (0, 1, 2):
+        tilings = []
+        for row in (row for row in soap.rows if row.branch == branch):
+            shape = read_shape(soap.folder / shape_name(row.step))
+            a, b, c = (shape.x[shape.triangles[:, k]] for k in range(3))
+            area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+            assert row.film_energy == pytest.approx(row.sigma_hat * area, rel=1e-12)
+            assert row.area == pytest.approx(area, rel=1e-12)
+            tilings.append(shape.triangles)
+        if branch == 0:
+            # The branch was repaired on the way.
+            assert not np.array_equal(tilings[0], tilings[-1])
+
+
+def test_special_point_of_a_soap_film_has_its_load_and_error_in_both_units(
+    soap: Exploration,
+) -> None:
+    """sigma_hat = 2 sqrt(3) k L^3 / alpha, for the load and for what it is known to."""
+    (special,) = read_special(soap.folder)
+    for name in ("", "_error"):
+        tension, springs = (
+            float(special[f"{of}{name}"]) for of in ("sigma_hat", "kL3_alpha")
+        )
+        assert 0 < tension == pytest.approx(2 * np.sqrt(3) * springs, rel=1e-14)
+    assert float(special["sigma_hat_error"]) < 1e-8 * float(special["sigma_hat"])
 
 
 def test_summary_says_what_was_run(result: Exploration, elongated: DiskMesh) -> None:

@@ -8,6 +8,6 @@ from .load import (
     Load as Load,
 )
 from .models import make_film as make_film
-from .plane import PlaneFilm as PlaneFilm, polygon_gradient as polygon_gradient
+from .plane import PlaneFilm as PlaneFilm
 from .protocol import Film as Film, FilmOfLoop as FilmOfLoop
 from .quadratic import QuadraticFilm as QuadraticFilm, Stiffness as Stiffness

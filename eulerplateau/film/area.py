@@ -13,10 +13,12 @@ from functools import partial
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.harmonic import balance
-from eulerplateau.film.interior import LocalFilm, local_film
+from eulerplateau.film.free_moves import FreeInterior
+from eulerplateau.film.harmonic import balance, follower
+from eulerplateau.film.interior import FreeFilm, HeightsFilm, LocalFilm
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
+from eulerplateau.film.normal_moves import normal_heights
 from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
@@ -24,6 +26,10 @@ from eulerplateau.mesh import Disk, Shape
 
 # Tilings whose patterns are kept: of a sweep on a few meshes none is planned twice.
 _KEPT = 4
+
+# Re-weighting brings a rough film near: until it gains less than this part of the area.
+_NEAR = 1e-3
+_REWEIGHTINGS = 6
 
 
 @dataclass(frozen=True)
@@ -211,3 +217,28 @@ class Area(Term):
 def area(disk: Disk) -> AreaFilm:
     """Return the true soap film on a disk."""
     return AreaFilm(disk.loop, disk.interior)
+
+
+def local_film(tiling: Tiling, x: FloatArray, free: bool = False) -> LocalFilm:
+    """Return the chart at a shape (n_v, 3), which is brought near to rest first.
+
+    free : whether vertices inside may move freely, which takes a discrete minimal surface
+    (minimal.py): on another film not all displacements are resisted.
+
+    Re-weighting: the film that is harmonic with the cotangent weights of the last one has
+    no more area (Pinkall and Polthier 1993).
+    """
+    sides = tiling.sides(x)
+    for _ in range(_REWEIGHTINGS):
+        following = follower(tiling, sides)
+        after = following.extend(x[tiling.loop])
+        if tiling.change(x, after) > -_NEAR * sides.areas.sum():
+            break
+        x, sides = after, tiling.sides(after)
+    else:
+        following = follower(tiling, sides)
+    normals = tiling.vertex_normals(sides)[tiling.interior]
+    if free:
+        return FreeFilm(tiling, x, sides, normals, following, FreeInterior(tiling))
+    heights = normal_heights(tiling, x, normals)
+    return HeightsFilm(tiling, x, sides, normals, following, heights)

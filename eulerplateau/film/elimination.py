@@ -12,13 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from scipy.linalg import LinAlgError
 from scipy.linalg.lapack import dpotrf, dtrtrs
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.elimination_kernels import (
-    add_block,
-)
 
 
 @dataclass(frozen=True)
@@ -161,3 +159,11 @@ def _condense_dense(
     half, _ = dtrtrs(factor, block[:own, own:], lower=True)
     extension, _ = dtrtrs(factor, half, lower=True, trans=1)
     return -extension, block[own:, own:] - half.T @ half, factor
+
+
+@njit(cache=True)
+def add_block(block: FloatArray, place: IntArray, total: FloatArray) -> None:
+    """Add a block (m, m) to the rows and columns `place` (m,) of `total` (n, n)."""
+    for i in range(place.shape[0]):
+        for j in range(place.shape[0]):
+            total[place[i], place[j]] += block[i, j]

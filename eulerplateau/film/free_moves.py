@@ -16,9 +16,9 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.elimination import Elimination, plan, summed
-from eulerplateau.film.normal_moves import AXES, is_inside, numbers
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 
+_AXES = np.arange(3)
 # Rounding of forces of unit tension along an edge, in eps: some twenty of them are summed.
 ROUNDING = 20 * float(np.finfo(np.float64).eps)
 _STEPS = 60
@@ -83,7 +83,7 @@ class FreeInterior:
 
     def _stiffened(self, blocks: FloatArray, shift: float) -> FloatArray:
         blocks = blocks.copy()
-        blocks[self._own[:, None], AXES, AXES] += shift
+        blocks[self._own[:, None], _AXES, _AXES] += shift
         return blocks
 
     @cached_property
@@ -95,13 +95,13 @@ class FreeInterior:
     @cached_property
     def _pairs_inside(self) -> IntArray:
         i, k = self.tiling.pairs
-        inside = is_inside(self.tiling)
+        inside = self.tiling.is_inside
         return np.flatnonzero(inside[i] & inside[k])
 
     @cached_property
     def _pieces(self) -> list[IntArray]:
         small = self.tiling.small_pieces
-        return [(3 * piece[:, None] + AXES).ravel() for piece in small]
+        return [(3 * piece[:, None] + _AXES).ravel() for piece in small]
 
     @cached_property
     def _inside(self) -> Elimination:
@@ -114,7 +114,7 @@ class FreeInterior:
 
     def _planned(self, pairs: IntArray, kept: IntArray) -> Elimination:
         i, k = self.tiling.pairs
-        number = 3 * numbers(self.tiling)[:, None] + AXES
+        number = 3 * self.tiling.numbers[:, None] + _AXES
         row = np.repeat(number[i[pairs]], 3, axis=1)
         column = np.tile(number[k[pairs]], 3)
         return plan(row.ravel(), column.ravel(), self._pieces, kept)

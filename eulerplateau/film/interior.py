@@ -36,8 +36,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.condensation import Condensation
 from eulerplateau.film.free_moves import FreeInterior, at_rest, is_rest
-from eulerplateau.film.harmonic import follower
-from eulerplateau.film.normal_moves import InteriorUnknowns, NormalHeights, normal_heights
+from eulerplateau.film.normal_moves import InteriorUnknowns, NormalHeights
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 
 _STEPS = 30
@@ -45,9 +44,6 @@ _STEPS = 30
 _PARTS = 1.0, 0.5, 0.25
 # Part of the error that a step with an old factorised Hessian may leave.
 _SLOW = 0.1
-# Re-weighting brings a rough film near: until it gains less than this part of the area.
-_NEAR = 1e-3
-_REWEIGHTINGS = 6
 # Cosine of the tilt of normals beyond which a chart gives way to a new one, and up to which
 # a film counts as being where its chart was made.
 _TILT = 0.9
@@ -286,28 +282,3 @@ class FreeFilm(LocalFilm):
         x = at_rest(self.variations, state.x)
         sides, u = self.tiling.sides(x), (x - base)[self.tiling.interior].ravel()
         return FilmAtRest(self, x, u, sides, self.tiling.gradient(sides))
-
-
-def local_film(tiling: Tiling, x: FloatArray, free: bool = False) -> LocalFilm:
-    """Return the chart at a shape (n_v, 3), which is brought near to rest first.
-
-    free : whether vertices inside may move freely, which takes a discrete minimal surface
-    (minimal.py): on another film not all displacements are resisted.
-
-    Re-weighting: the film that is harmonic with the cotangent weights of the last one has
-    no more area (Pinkall and Polthier 1993).
-    """
-    sides = tiling.sides(x)
-    for _ in range(_REWEIGHTINGS):
-        following = follower(tiling, sides)
-        after = following.extend(x[tiling.loop])
-        if tiling.change(x, after) > -_NEAR * sides.areas.sum():
-            break
-        x, sides = after, tiling.sides(after)
-    else:
-        following = follower(tiling, sides)
-    normals = tiling.vertex_normals(sides)[tiling.interior]
-    if free:
-        return FreeFilm(tiling, x, sides, normals, following, FreeInterior(tiling))
-    heights = normal_heights(tiling, x, normals)
-    return HeightsFilm(tiling, x, sides, normals, following, heights)

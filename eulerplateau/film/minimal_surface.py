@@ -14,8 +14,8 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.film.flips import delaunay_flips
 from eulerplateau.film.free_moves import ROUNDING, FreeInterior, smaller
-from eulerplateau.film.repair import delaunay_flips
 from eulerplateau.film.tiling import LIMITS, Tiling
 
 _STEPS = 300

@@ -20,7 +20,6 @@ from eulerplateau.film.tiling import Tiling, TriangleGeometry
 # Width of the strip, in L: a circle's radius is 0.16. Where it reaches the middle between
 # two strands those on either side follow different ones, the less the better.
 _WIDTH = 0.1
-AXES = np.arange(3)
 
 
 class InteriorUnknowns(Protocol):
@@ -122,7 +121,7 @@ class NormalHeights:
     def _chosen(self) -> tuple[IntArray, IntArray, IntArray]:
         """Which pairs couple heights, a height and the loop, the loop and the loop."""
         i, k = self.tiling.pairs
-        inside = is_inside(self.tiling)
+        inside = self.tiling.is_inside
         follows = self.weight > 0
         return (
             np.flatnonzero(inside[i] & inside[k]),
@@ -132,7 +131,7 @@ class NormalHeights:
 
     @cached_property
     def _inside(self) -> Elimination:
-        heights, number = self._chosen[0], numbers(self.tiling)
+        heights, number = self._chosen[0], self.tiling.numbers
         i, k = self.tiling.pairs
         none = np.zeros(0, dtype=np.int64)
         return plan(number[i[heights]], number[k[heights]], self.tiling.pieces, none)
@@ -141,12 +140,12 @@ class NormalHeights:
     def _elimination(self) -> Elimination:
         tiling, number, (heights, coupling, loop) = (
             self.tiling,
-            numbers(self.tiling),
+            self.tiling.numbers,
             self._chosen,
         )
         i, k = tiling.pairs
         n_i = len(tiling.interior)
-        on_loop = n_i + 3 * self.leader[:, None] + AXES
+        on_loop = n_i + 3 * self.leader[:, None] + np.arange(3)
         kept_row = np.repeat(on_loop[i[loop]], 3, axis=1)
         kept_column = np.tile(on_loop[k[loop]], 3)
         row = [number[i[heights]], np.repeat(number[i[coupling]], 3), kept_row.ravel()]
@@ -167,17 +166,3 @@ def normal_heights(tiling: Tiling, x: FloatArray, normals: FloatArray) -> Normal
     leader[loop], leader[inside] = np.arange(len(loop)), nearest
     weight[inside] = np.square(np.maximum(1 - distance / _WIDTH, 0.0))
     return NormalHeights(tiling, directions, leader, weight)
-
-
-def is_inside(tiling: Tiling) -> IntArray:
-    """Return whether each vertex (n_v,) is inside."""
-    found = np.zeros(tiling.n_v, dtype=bool)
-    found[tiling.interior] = True
-    return found
-
-
-def numbers(tiling: Tiling) -> IntArray:
-    """Return the place of each vertex (n_v,) among those inside, then those of the loop."""
-    number = np.empty(tiling.n_v, dtype=np.int64)
-    number[np.concatenate([tiling.interior, tiling.loop])] = np.arange(tiling.n_v)
-    return number

@@ -17,7 +17,7 @@ from eulerplateau.film.harmonic import follower
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.plane_mesh import carry_in_plane
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
-from eulerplateau.mesh import Disk, Shape, polygon_area
+from eulerplateau.mesh import Disk, Shape, polygon_area, polygon_gradient
 
 # A loop whose extent across its mean plane is a smaller part of the largest is flat.
 _FLAT = 1e-9
@@ -170,12 +170,6 @@ class PolygonArea(Term):
     def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
         """Return the derivative of the force by the load."""
         return polygon_gradient(x) if parameter == "load" else None
-
-
-def polygon_gradient(x: FloatArray) -> FloatArray:
-    """Return the gradient (n, 2) of the area: half the chord across, turned outwards."""
-    chord = np.roll(x, -1, axis=0) - np.roll(x, 1, axis=0)
-    return 0.5 * np.column_stack([chord[:, 1], -chord[:, 0]])
 
 
 def plane_film(disk: Disk) -> PlaneFilm:

@@ -10,10 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.flip_kernels import flip_to_delaunay
+from eulerplateau.film.flips import delaunay_flips
 from eulerplateau.film.harmonic import follow_loop
 from eulerplateau.film.tiling import LIMITS, Tiling
-from eulerplateau.mesh import neighbours
 
 _ROUNDS = 40
 # Degrees: a worst angle that is gained no more ends the repair.
@@ -63,13 +62,6 @@ def mend_triangles(
         if idle > 5 or angle > enough:
             break
     return best
-
-
-def delaunay_flips(tiling: Tiling, x: FloatArray) -> Tiling:
-    """Return the film with Delaunay's triangles on the vertices x (n_v, 3)."""
-    triangles = tiling.triangles.copy()
-    flips = flip_to_delaunay(np.ascontiguousarray(x), triangles, neighbours(triangles))
-    return tiling.with_triangles(triangles) if flips else tiling
 
 
 def _slid(tiling: Tiling, x: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csc_array
 
-from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.film import area_kernels
 from eulerplateau.film.dissection import LARGEST, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
@@ -100,6 +100,20 @@ class Tiling:
     def n_v(self) -> int:
         """Number of vertices."""
         return len(self.loop) + len(self.interior)
+
+    @cached_property
+    def is_inside(self) -> BoolArray:
+        """Whether each vertex (n_v,) is inside."""
+        inside = np.zeros(self.n_v, dtype=bool)
+        inside[self.interior] = True
+        return inside
+
+    @cached_property
+    def numbers(self) -> IntArray:
+        """The place of each vertex (n_v,) among those inside, then those of the loop."""
+        number = np.empty(self.n_v, dtype=np.int64)
+        number[np.concatenate([self.interior, self.loop])] = np.arange(self.n_v)
+        return number
 
     def with_triangles(self, triangles: IntArray) -> Tiling:
         """Return the tiling of the same vertices by other triangles (n_t, 3)."""

@@ -1,12 +1,9 @@
 from .bending import Bending as Bending, inextensible as inextensible
-from .constraint import (
-    Constraint as Constraint,
-    Lengths as Lengths,
-    Unconstrained as Unconstrained,
-)
-from .energy import LoopEnergy as LoopEnergy, Term as Term
+from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy, Term as Term
 from .lengths import (
     LengthMetric as LengthMetric,
+    Lengths as Lengths,
+    Unconstrained as Unconstrained,
     close_with_lengths as close_with_lengths,
     length_metric as length_metric,
     project_lengths as project_lengths,

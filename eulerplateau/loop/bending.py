@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.constraint import Lengths
 from eulerplateau.loop.energy import LoopEnergy, Term
+from eulerplateau.loop.lengths import Lengths
 from eulerplateau.loop.loop import Loop
 
 

@@ -10,11 +10,27 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.constraint import Constraint
+
+
+class Constraint(Protocol):
+    """m equations c(x) = 0 for loops x (n, d); their multipliers are called tensions."""
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """Return dc/dx (m, d n)."""
+
+    def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return J^T tensions (n, d), for tensions (m,)."""
+
+    def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the second derivative of tensions . c, as a term's `hessian` is."""
+
+    def project(self, x: FloatArray) -> FloatArray | None:
+        """Return the nearest loop (n, d) with c = 0, to rounding; None if it is lost."""
 
 
 class Term(ABC):

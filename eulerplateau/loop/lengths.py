@@ -162,3 +162,46 @@ def close_with_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
         if loop.length_error(x) < 1e-3:
             break
     return project_lengths(loop, x - x.mean(axis=0) + x_loop.mean(axis=0))
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """Every edge keeps its length: c_v = (|e_v|^2 - s_v^2) / (2 s_v)."""
+
+    loop: Loop
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """Return J (n, d n): see lengths.jacobian."""
+        return jacobian(self.loop, x)
+
+    def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return J^T tensions (n, d)."""
+        return self.loop.tension_force(x, tensions)
+
+    def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return D^T diag(tensions / s) D (n, n)."""
+        return self.loop.tension_stiffness(tensions)
+
+    def project(self, x: FloatArray) -> FloatArray | None:
+        """Return the nearest loop that keeps its lengths."""
+        return project_lengths(self.loop, x)
+
+
+class Unconstrained:
+    """No equation at all: the loop's length is free."""
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """Return no rows (0, d n)."""
+        return np.zeros((0, x.size))
+
+    def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return no force (n, d)."""
+        return np.zeros_like(x)
+
+    def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return no stiffness (n, n)."""
+        return np.zeros((len(x), len(x)))
+
+    def project(self, x: FloatArray) -> FloatArray | None:
+        """Return the loop itself."""
+        return x

@@ -9,7 +9,7 @@ from .files import (
 from .generation import generate as generate
 from .making import mesh_polygon as mesh_polygon
 from .measures import Measurer as Measurer, Measures as Measures, measure as measure
-from .polygon import polygon_area as polygon_area
+from .polygon import polygon_area as polygon_area, polygon_gradient as polygon_gradient
 from .shape import Shape as Shape
 from .spec import ALGORITHMS as ALGORITHMS, MeshSpec as MeshSpec
 from .triangles import (

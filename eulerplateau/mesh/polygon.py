@@ -81,6 +81,12 @@ def polygon_area(corners: FloatArray) -> float:
     return 0.5 * float((y[:, 0] * after[:, 1] - y[:, 1] * after[:, 0]).sum())
 
 
+def polygon_gradient(x: FloatArray) -> FloatArray:
+    """Return the gradient (n, 2) of the area: half the chord across, turned outwards."""
+    chord = np.roll(x, -1, axis=0) - np.roll(x, 1, axis=0)
+    return 0.5 * np.column_stack([chord[:, 1], -chord[:, 0]])
+
+
 def perimeter(corners: FloatArray) -> float:
     """Return the length of the closed polygon `corners` (n, 2)."""
     return float(np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1).sum())

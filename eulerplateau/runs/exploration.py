@@ -22,7 +22,7 @@ from eulerplateau.errors import SpecError
 from eulerplateau.mesh import Disk, write_whole
 from eulerplateau.runs.recording import make_mesh, recording
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.sweep import start_shape, stored_start
+from eulerplateau.runs.start import start_shape, stored_start
 from eulerplateau.runs.table import BranchRow
 from eulerplateau.solvers import Equilibrium, Problem
 

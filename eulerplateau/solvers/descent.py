@@ -16,16 +16,9 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers.equilibrium import (
-    Equilibrium,
-    Stability,
-    Status,
-    with_stability,
-)
+from eulerplateau.solvers.equilibrium import Stability, Status
 from eulerplateau.solvers.models import Models
-from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import TangentModel
 from eulerplateau.solvers.trust_region import trust_region_step
 
@@ -181,12 +174,3 @@ def _bounded_step(energy: LoopEnergy, model: TangentModel, radius: float) -> Flo
         values[live], slope[live], radius
     )
     return step
-
-
-def record(
-    problem: Problem, film: FilmOfLoop, state: State, load: float, status: Status
-) -> Equilibrium:
-    """Return the equilibrium a descent has come to, or what there is to say about it."""
-    shape = film.shape(state.model.x)
-    found = problem.equilibrium(shape, state.model.tensions, load, status)
-    return with_stability(replace(found, iterations=state.iteration), state.stability)

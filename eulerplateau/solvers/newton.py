@@ -82,7 +82,7 @@ def models_for(film: Film, loop: Loop, energy: LoopEnergy) -> Models:
     """Return how the second variation of a film's energy is looked at."""
     match film:
         case QuadraticFilm():
-            from eulerplateau.solvers.quadratic import quadratic_models
+            from eulerplateau.solvers.quadratic_models import quadratic_models
 
             return quadratic_models(loop, energy)
         case _:

@@ -21,7 +21,9 @@ from eulerplateau.solvers.equilibrium import (
     LARGEST_LOAD,
     RESOLVED_TURNING,
     Equilibrium,
+    Stability,
     Status,
+    with_stability,
 )
 
 # Relative error of lengths up to which what a solver stopped at is a loop at all.
@@ -152,6 +154,19 @@ class Problem:
             seconds=0.0,
             status=status,
         )
+
+    def record(
+        self,
+        shape: Shape,
+        tensions: FloatArray,
+        load: float,
+        status: Status,
+        stability: Stability | None,
+        iterations: int,
+    ) -> Equilibrium:
+        """Return what a search has come to, with the status its stability gives it."""
+        found = self.equilibrium(shape, tensions, load, status)
+        return with_stability(replace(found, iterations=iterations), stability)
 
     def unusable_start(self, shape: Shape, load: float) -> Equilibrium | None:
         """Return the record of a start no solver can work with, or None."""

@@ -13,11 +13,11 @@ from eulerplateau.errors import MeshError
 from eulerplateau.film import make_film
 from eulerplateau.loop import close_with_lengths
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers.descent import Descent, record
+from eulerplateau.solvers.descent import Descent
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.models import DenseModels
 from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.quadratic import quadratic_models
+from eulerplateau.solvers.quadratic_models import quadratic_models
 
 # A soap film is sought near the last shape at most so many times in one solve.
 _SHAPES = 60
@@ -90,10 +90,10 @@ def _near(
         except LinAlgError:
             return None if found is None else replace(found, status=Status.STALLED)
         spent += state.iteration
-        if state.stability is None:
-            state = replace(state, stability=models.spectrum(state.model))
-        found = replace(record(problem, film, state, load, status), iterations=spent)
-        x_loop, shape = state.model.x, found.shape
+        stability = state.stability or models.spectrum(state.model)
+        x_loop, tensions = state.model.x, state.model.tensions
+        shape = film.shape(x_loop)
+        found = problem.record(shape, tensions, load, status, stability, spent)
         own = models.energy.holds(x_loop) and film.made_at(x_loop)
         lost = status is Status.STALLED or problem.film.pinched(shape, problem.loop)
         if own or lost or spent >= max_iterations:

@@ -21,11 +21,10 @@ from eulerplateau.film import (
     LocalFilm,
     PlaneFilm,
     QuadraticFilm,
-    polygon_gradient,
 )
 from eulerplateau.loop import Loop, remove_sliding
 from eulerplateau.loop.kernels import area_beyond_linear
-from eulerplateau.mesh import Shape
+from eulerplateau.mesh import Shape, polygon_gradient
 from eulerplateau.solvers.problem import Problem
 
 

@@ -10,10 +10,9 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import area
 from eulerplateau.film.harmonic import balance, follower, moved_with
 from eulerplateau.film.interior import Chart, Relaxed, chart_at
-from eulerplateau.film.plane import polygon_gradient
 from eulerplateau.loop.loop import Loop
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.mesh.polygon import polygon_area
+from eulerplateau.mesh.polygon import polygon_area, polygon_gradient
 from tests.helpers import shapes, twins
 
 RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1

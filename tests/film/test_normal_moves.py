@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from eulerplateau.film.area_energy import AreaEnergy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import area
-from eulerplateau.film.area_energy import AreaEnergy
 from eulerplateau.film.interior import Chart, chart_at
 from eulerplateau.loop.loop import Loop
 from eulerplateau.mesh.disk import DiskMesh

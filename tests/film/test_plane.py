@@ -11,12 +11,12 @@ from eulerplateau.film.plane_energy import PlaneEnergy
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
 from eulerplateau.exact.planar import planar_film
-from eulerplateau.film.plane import PlaneFilm, plane_film, polygon_gradient
+from eulerplateau.film.plane import PlaneFilm, plane_film
 from eulerplateau.loop.lengths import project_lengths
 from eulerplateau.loop.loop import Loop
 from eulerplateau.mesh.curvature import loop_frame
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.mesh.polygon import polygon_area
+from eulerplateau.mesh.polygon import polygon_area, polygon_gradient
 from eulerplateau.solvers import conjugate_gradient, newton
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.in_plane.newton import settle_in_plane

@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import polygon_gradient
 from eulerplateau.loop import Loop, slide_kernels
+from eulerplateau.mesh import polygon_gradient
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.in_plane import kernels as plane_kernels
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from threadpoolctl import threadpool_limits
 
@@ -11,7 +10,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import close_with_lengths
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent
-from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
+from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.in_plane.newton import PlaneEquilibrium, minimum_in_plane
 from eulerplateau.solvers.models import DenseModels
 from eulerplateau.solvers.problem import Problem
@@ -54,5 +53,7 @@ def search(
             state, status = Descent(models, max_iterations, shown).run(flat)
         polygon = PlaneEquilibrium(state.model.x, state.model.tensions, state.iteration)
         spectrum = state.stability or models.spectrum(state.model)
-    found = problem.equilibrium(film.shape(polygon.x), polygon.multipliers, load, status)
-    return with_stability(replace(found, iterations=polygon.iterations), spectrum)
+    shape = film.shape(polygon.x)
+    return problem.record(
+        shape, polygon.multipliers, load, status, spectrum, polygon.iterations
+    )

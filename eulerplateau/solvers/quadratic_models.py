@@ -1,0 +1,95 @@
+"""How the energy of a film with fixed weights is looked at: one matrix for all coordinates.
+
+Close to an equilibrium Newton's method on positions and tensions together is a short cut
+(primal_dual.py); of large loops the second variation is looked at on a subspace
+(large_loops/).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop import Loop, LoopEnergy
+from eulerplateau.solvers.equilibrium import Stability
+from eulerplateau.solvers.large_loops.subspace_model import lowest_modes, subspace_model
+from eulerplateau.solvers.models import DenseModels, Models, Settled
+from eulerplateau.solvers.primal_dual import settle
+from eulerplateau.solvers.second_variation import TangentModel
+
+# Up to this many loop vertices the whole tangent space is searched, beyond it a subspace;
+# a rough start is then smoothed on a loop of as many.
+DENSE_LOOP = 128
+
+
+@dataclass(frozen=True)
+class QuadraticModels(DenseModels):
+    """The whole tangent space, and Newton's method on positions and tensions near by."""
+
+    loop: Loop
+
+    @cached_property
+    def matrix(self) -> FloatArray:
+        """A (n_b, n_b), the energy's constant second derivative."""
+        return self.energy.hessian(np.zeros((len(self.loop.rest_lengths), 3)))
+
+    def settle(
+        self,
+        x: FloatArray,
+        tensions: FloatArray,
+        limit: int,
+        observe: Callable[[FloatArray], None],
+    ) -> Settled | None:
+        """Return the equilibrium next to x (n_b, 3), if Newton's method comes to one."""
+        return settle(self.energy, self.loop, self.matrix, x, tensions, limit, observe)
+
+
+@dataclass(frozen=True)
+class SubspaceModels:
+    """A subspace of the tangent space of a large loop at a time."""
+
+    energy: LoopEnergy
+    loop: Loop
+
+    @cached_property
+    def matrix(self) -> FloatArray:
+        """A (n_b, n_b), the energy's constant second derivative."""
+        return self.energy.hessian(np.zeros((len(self.loop.rest_lengths), 3)))
+
+    @property
+    def always_classified(self) -> bool:
+        """Whether the spectrum is known wherever a descent ends: it costs too much."""
+        return False
+
+    def at(self, x: FloatArray, before: TangentModel | None = None) -> TangentModel:
+        """Return the model at a loop (n_b, 3)."""
+        return subspace_model(self.energy, self.loop, self.matrix, x, before)
+
+    def spectrum(self, model: TangentModel) -> Stability:
+        """Return the lowest eigenvalues: every one that is not stable, and one more."""
+        return lowest_modes(self.loop, self.matrix, model)[0]
+
+    def modes(self, model: TangentModel, count: int) -> FloatArray:
+        """Return as many modes (3 n_b, m) as are unstable or neutral, and one more."""
+        return lowest_modes(self.loop, self.matrix, model)[1][:, :count]
+
+    def settle(
+        self,
+        x: FloatArray,
+        tensions: FloatArray,
+        limit: int,
+        observe: Callable[[FloatArray], None],
+    ) -> Settled | None:
+        """Return None: a model's Newton step is as good as it gets."""
+        return None
+
+
+def quadratic_models(loop: Loop, energy: LoopEnergy) -> Models:
+    """Return how an energy of fixed weights is looked at, by the size of its loop."""
+    if len(loop.rest_lengths) <= DENSE_LOOP:
+        return QuadraticModels(energy, loop)
+    return SubspaceModels(energy, loop)

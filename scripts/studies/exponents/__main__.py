@@ -7,11 +7,9 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches import Limits, Settings, explore, first_point, fit_power
-from eulerplateau.mesh import DiskMesh, load_mesh, loop_frame
-from eulerplateau.mesh.curvature import total_gauss_curvature
-from eulerplateau.runs.sweep import sweep
-from eulerplateau.solvers import Problem, make_problem, solve
+from eulerplateau.branches import explore, fit_power
+from eulerplateau.mesh import Measurer, load_mesh
+from eulerplateau.solvers import Problem, sweep
 from scripts.studies.common import ROOT
 
 MESHES = ROOT / "meshes"
@@ -26,11 +24,10 @@ def main() -> None:
     click.echo("| film | quantity | n, onset fitted | n, onset from the eigenvalue |")
     click.echo("|---|---|---:|---:|")
     for film, file in FILMS.items():
-        mesh = load_mesh(MESHES / file)
-        problem = make_problem(mesh)
-        onset, error = locate(mesh, problem)
+        problem = Problem(load_mesh(MESHES / file))
+        onset, error = locate(problem)
         loads = onset * (1 + DISTANCES)
-        values = np.array(follow(mesh, problem, loads))
+        values = np.array(follow(problem, loads))
         for name, column in zip((r"⟨\|κₙ\|⟩", "⟨K⟩"), values.T, strict=True):
             free, fixed = (fit_power(loads, column, onset=o) for o in (None, onset))
             click.echo(
@@ -40,28 +37,19 @@ def main() -> None:
         click.echo(f"| {film} | onset | | {onset:.8f} ± {error:.0e} |")
 
 
-def locate(mesh: DiskMesh, problem: Problem) -> tuple[float, float]:
+def locate(problem: Problem) -> tuple[float, float]:
     """Return the load at which the planar film loses stability, and its error."""
-    flat = solve(problem, mesh.x, np.zeros(mesh.n_b), WINDOW[0])
-    settings = Settings(load_range=WINDOW, load_unit=WINDOW[1])
-    start = first_point(problem, flat.x[mesh.loop], WINDOW[0], settings)
-    visits = explore(start, settings, Limits(special_points=0))
-    special = next(v.special for v in visits if v.special is not None)
-    return special.point.load, special.load_error
+    points = explore(problem, WINDOW, special_points=0)
+    special = next(point.special for point in points if point.special is not None)
+    return special.point.value, special.error
 
 
-def follow(
-    mesh: DiskMesh, problem: Problem, loads: FloatArray
-) -> list[tuple[float, float]]:
+def follow(problem: Problem, loads: FloatArray) -> list[tuple[float, float]]:
     """Return <|kappa_n|> and <K> at falling loads."""
-    noise = 1e-3 * np.random.default_rng(1).standard_normal(mesh.n_v)
-    start = mesh.x + np.outer(noise, [0.0, 0.0, 1.0])
-    found = []
-    for state in sweep(problem, start, loads.tolist(), solve):
-        frame = loop_frame(mesh, state.x)
-        bent = float(np.abs(frame.kappa_n) @ frame.mean_lengths)
-        found.append((bent, total_gauss_curvature(mesh, state.x)))
-    return found
+    measurer = Measurer(problem.disk)
+    shapes = (found.shape for found in sweep(problem, loads.tolist()))
+    measured = [measurer.measure(shape) for shape in shapes]
+    return [(m.abs_kappa_n, m.total_gauss_curvature) for m in measured]
 
 
 if __name__ == "__main__":

@@ -12,12 +12,11 @@ import numpy as np
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
-from eulerplateau.film import condense
-from eulerplateau.film.area import area
-from eulerplateau.loop import Loop, stress_stiffness
+from eulerplateau.film import AreaFilm
+from eulerplateau.film.harmonic import follower
 from eulerplateau.mesh import DiskMesh
 from eulerplateau.mesh.polygon import ellipse_perimeter
-from eulerplateau.solvers import Equilibrium, make_problem, newton
+from eulerplateau.solvers import Equilibrium, Problem, solve
 from scripts.studies.common import make_mesh
 
 # The start, an ellipse, fixes which way the lobes lie and nothing else.
@@ -83,32 +82,28 @@ def thresholds() -> Iterator[Threshold]:
 
 def twist(mesh: DiskMesh, name: str, grading: float) -> Threshold:
     """Return the threshold of one mesh."""
-    flat = make_problem(mesh, "area", plane=True)
-    start = newton.solve(flat, mesh.x, np.zeros(mesh.n_b), sum(WINDOW) / 2)
-    if start.triangles is not None:
-        flat = flat.with_triangles(start.triangles)
-        mesh = mesh.with_triangles(start.triangles)
+    problem = Problem(mesh, "area", in_plane=True)
+    film = AreaFilm(mesh.loop, mesh.interior)
+    start = solve(problem, sum(WINDOW) / 2)
 
     def lowest(load: float) -> float:
-        found = newton.solve(flat, start.x, start.multipliers, load)
-        here = mesh if found.triangles is None else mesh.with_triangles(found.triangles)
-        return transverse_eigenvalue(here, found)
+        return transverse_eigenvalue(problem, film, solve(problem, load, start))
 
     sigma_hat = brentq(lowest, *WINDOW, xtol=1e-7)
-    angle = area(mesh).sides(start.x).smallest_angle
+    angle = film.tiling(start.shape.triangles).sides(start.shape.x).smallest_angle
     return Threshold(name, grading, mesh.n_v, mesh.n_b, float(sigma_hat), angle)
 
 
-def transverse_eigenvalue(mesh: DiskMesh, found: Equilibrium) -> float:
+def transverse_eigenvalue(problem: Problem, film: AreaFilm, found: Equilibrium) -> float:
     """Return the lowest eigenvalue across the plane of a flat film, rigid motions apart."""
-    film, loop = area(mesh), Loop(mesh.rest_lengths)
-    laplacian = film.cotangent_laplacian(film.sides(found.x))
-    pull = condense(laplacian, mesh.loop, mesh.interior).stiffness
-    stiffness = 2 * loop.bending_matrix + stress_stiffness(loop, found.multipliers)
+    loop, shape = problem.loop, found.shape
+    tiling = film.tiling(shape.triangles)
+    pull = follower(tiling, tiling.sides(shape.x)).stiffness
+    stiffness = 2 * loop.bending_matrix + loop.tension_stiffness(found.tensions)
     root = np.sqrt(loop.mean_lengths)
     hessian = (stiffness + found.load * pull) / (root * root[:, None])
-    flat = np.linalg.svd(found.x[mesh.loop], full_matrices=False)[0][:, :2]
-    rigid = np.column_stack([np.ones(mesh.n_b), flat]) * root[:, None]
+    flat = np.linalg.svd(shape.x_loop, full_matrices=False)[0][:, :2]
+    rigid = np.column_stack([np.ones(len(root)), flat]) * root[:, None]
     others = np.linalg.qr(rigid, mode="complete")[0][:, 3:]
     return float(np.linalg.eigvalsh(others.T @ hessian @ others)[0])
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -11,14 +13,8 @@ from scipy.optimize import brentq
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FILM_LOADS
-from eulerplateau.loop import project_lengths
-from eulerplateau.solvers import (
-    Problem,
-    TangentModel,
-    loop_energy,
-    make_problem,
-    tangent_model,
-)
+from eulerplateau.loop import LoopEnergy, project_lengths
+from eulerplateau.solvers import Problem, TangentModel, tangent_model
 from scripts.studies.common import make_mesh
 
 PI3 = np.pi**3
@@ -42,6 +38,7 @@ MESHES: dict[tuple[str, str], list[dict[str, Any]]] = {
         for count in (6, 12, 24, 48)
     ],
 }
+EnergyAt = Callable[[float], LoopEnergy]
 # Loads are tried upwards in steps of this share of the threshold, from half of it.
 STEP = 0.05
 CONVERGED, ITERATIONS = 1e-9, 40
@@ -76,7 +73,8 @@ class Thresholds:
 def thresholds(case: Case) -> Thresholds:
     """Locate both thresholds of a case."""
     mesh = make_mesh(**case.settings)
-    problem = make_problem(mesh, case.film)
+    problem = Problem(mesh, case.film)
+    energy = partial(problem.film.of_loop(mesh.shape).energy, problem.loop)
     turns = 2 * np.pi * np.arange(mesh.n_b) / mesh.n_b
     circle = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
     start = project_lengths(problem.loop, circle / (2 * np.pi))
@@ -84,16 +82,16 @@ def thresholds(case: Case) -> Thresholds:
     per_load = FILM_LOADS[case.film].tension_per_load
     within = None
     if case.film in WITHIN and case.polygon == CIRCLE:
-        within = per_load * first_zero(problem, start, 0, WITHIN[case.film] / per_load)
-    across = per_load * first_zero(problem, start, 1, ACROSS / per_load)
+        within = per_load * first_zero(energy, start, 0, WITHIN[case.film] / per_load)
+    across = per_load * first_zero(energy, start, 1, ACROSS / per_load)
     return Thresholds(case, mesh.n_v, mesh.n_b, across, within)
 
 
-def first_zero(problem: Problem, x: FloatArray, part: int, expected: float) -> float:
+def first_zero(energy: EnergyAt, x: FloatArray, part: int, expected: float) -> float:
     """Return the load at which the lowest eigenvalue of a part of the spectrum vanishes."""
 
     def lowest(load: float, x: FloatArray) -> tuple[float, FloatArray]:
-        model = planar_equilibrium(problem, x, load)
+        model = planar_equilibrium(energy, x, load)
         return float(np.linalg.eigvalsh(parts(model)[part][1])[0]), model.x
 
     loads = expected * np.arange(0.5, 1.5, STEP)
@@ -108,15 +106,16 @@ def first_zero(problem: Problem, x: FloatArray, part: int, expected: float) -> f
     raise ArithmeticError(f"no threshold up to {loads[-1]:g}")
 
 
-def planar_equilibrium(problem: Problem, x: FloatArray, load: float) -> TangentModel:
+def planar_equilibrium(energy: EnergyAt, x: FloatArray, load: float) -> TangentModel:
     """Return the equilibrium that Newton's method in the plane reaches from x (n_b, 3)."""
+    project = energy(load).constraint.project
     for _ in range(ITERATIONS):
-        model = tangent_model(loop_energy(problem, load), x)
+        model = tangent_model(energy(load), x)
         if model.residual <= max(CONVERGED, 10 * model.rounding):
             return model
         basis, hessian = parts(model)[0]
         step = basis @ np.linalg.solve(hessian, -(basis.T @ model.gradient))
-        moved = project_lengths(problem.loop, x + model.displacement(step))
+        moved = project(x + model.displacement(step))
         if moved is None:
             break
         x = moved

@@ -9,7 +9,8 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import AreaFilm, area
-from eulerplateau.film.quadratic import FILMS
+from eulerplateau.film.models import make_film
+from eulerplateau.film.tiling import Tiling, TriangleGeometry
 from eulerplateau.loop.kernels import area_beyond_linear
 from eulerplateau.mesh.disk import DiskMesh
 from tests.helpers import shapes, soap_films, twins
@@ -18,6 +19,11 @@ from tests.helpers import shapes, soap_films, twins
 @pytest.fixture(scope="module")
 def film(oval: DiskMesh) -> AreaFilm:
     return area(oval)
+
+
+@pytest.fixture(scope="module")
+def tiling(oval: DiskMesh, film: AreaFilm) -> Tiling:
+    return film.tiling(oval.triangles)
 
 
 @pytest.fixture(scope="module")
@@ -31,10 +37,10 @@ def direction(x: FloatArray, seed: int = 1) -> FloatArray:
     return 0.01 * step / np.linalg.norm(step, axis=1).max()
 
 
-def twin(film: AreaFilm, x: FloatArray) -> float:
+def twin(tiling: Tiling, x: FloatArray) -> float:
     """Heron's formula, triangle by triangle."""
     total = 0.0
-    for i, j, k in film.triangles:
+    for i, j, k in tiling.triangles:
         a, b, c = (np.linalg.norm(x[p] - x[q]) for p, q in ((i, j), (j, k), (k, i)))
         s = (a + b + c) / 2
         total += np.sqrt(s * (s - a) * (s - b) * (s - c))
@@ -42,33 +48,42 @@ def twin(film: AreaFilm, x: FloatArray) -> float:
 
 
 def test_energy_is_the_load_times_the_area_of_the_triangles(
-    film: AreaFilm, x: FloatArray
+    oval: DiskMesh, film: AreaFilm, tiling: Tiling, x: FloatArray
 ) -> None:
-    assert film.energy_gradient(x, 3.0)[0] == pytest.approx(3 * twin(film, x), rel=1e-12)
-    assert FILMS["area"] is area
-    assert film.tension_per_load == 1.0
+    energy = film.energy_gradient(oval.shape.moved(x), 3.0)[0]
+    assert energy == pytest.approx(3 * twin(tiling, x), rel=1e-12)
+    assert isinstance(make_film(oval, "area"), AreaFilm)
+    assert film.load.tension_per_load == 1.0
 
 
 def test_flat_film_has_the_area_of_its_polygon(oval: DiskMesh, film: AreaFilm) -> None:
     """The shoelace formula, whatever the triangles inside."""
     a, b = oval.x[oval.loop, :2].T
     shoelace = 0.5 * np.sum(a * np.roll(b, -1) - np.roll(a, -1) * b)
-    assert film.energy_gradient(oval.x, 1.0)[0] == pytest.approx(shoelace, rel=1e-14)
+    assert film.energy_gradient(oval.shape, 1.0)[0] == pytest.approx(shoelace, rel=1e-14)
 
 
-def test_gradient_leaves_a_remainder_of_second_order(film: AreaFilm, x: FloatArray) -> None:
-    slope = twins.taylor_slope(lambda y: film.energy_gradient(y, 2.0), x, direction(x))
+def energy_at(disk: DiskMesh, film: AreaFilm, load: float) -> twins.Field:
+    return lambda x: film.energy_gradient(disk.shape.moved(x), load)
+
+
+def test_gradient_leaves_a_remainder_of_second_order(
+    oval: DiskMesh, film: AreaFilm, x: FloatArray
+) -> None:
+    slope = twins.taylor_slope(energy_at(oval, film, 2.0), x, direction(x))
     assert slope == pytest.approx(2.0, abs=0.05)
 
 
-def test_hessian_leaves_a_remainder_of_third_order(film: AreaFilm, x: FloatArray) -> None:
-    p = direction(x)
-    hessian = soap_films.hessian(film, x)
+def test_hessian_leaves_a_remainder_of_third_order(
+    oval: DiskMesh, film: AreaFilm, tiling: Tiling, x: FloatArray
+) -> None:
+    p, area_at = direction(x), energy_at(oval, film, 1.0)
+    hessian = soap_films.hessian(tiling, x)
 
     def curved(y: FloatArray) -> tuple[float, FloatArray]:
         """The area with its second-order part about x taken away."""
         moved = (y - x).ravel()
-        value, gradient = film.energy_gradient(y, 1.0)
+        value, gradient = area_at(y)
         bent = hessian @ moved
         return value - 0.5 * float(moved @ bent), gradient - bent.reshape(x.shape)
 
@@ -78,40 +93,40 @@ def test_hessian_leaves_a_remainder_of_third_order(film: AreaFilm, x: FloatArray
 
 
 def test_gradient_is_the_cotangent_laplacian_of_the_positions(
-    film: AreaFilm, x: FloatArray
+    tiling: Tiling, x: FloatArray
 ) -> None:
     """Pinkall and Polthier (1993)."""
-    sides = film.sides(x)
-    laplacian = film.cotangent_laplacian(sides)
-    np.testing.assert_allclose(laplacian @ x, film.gradient(sides), atol=1e-14)
+    sides = tiling.sides(x)
+    laplacian = tiling.cotangent_laplacian(sides)
+    np.testing.assert_allclose(laplacian @ x, tiling.gradient(sides), atol=1e-14)
     np.testing.assert_allclose(laplacian.sum(axis=1), 0, atol=1e-12)
 
 
 def test_normal_hessian_is_the_hessian_along_the_directions(
-    film: AreaFilm, x: FloatArray
+    tiling: Tiling, x: FloatArray
 ) -> None:
-    sides = film.sides(x)
+    sides = tiling.sides(x)
     directions = np.random.default_rng(2).standard_normal(x.shape)
     columns = np.zeros((3 * len(x), len(x)))
     for d in range(3):
         columns[d::3][np.diag_indices(len(x))] = directions[:, d]
-    expected = columns.T @ (soap_films.hessian(film, x) @ columns)
-    found = film.normal_hessian(sides, directions).toarray()
+    expected = columns.T @ (soap_films.hessian(tiling, x) @ columns)
+    found = tiling.normal_hessian(sides, directions).toarray()
     np.testing.assert_allclose(found, expected, atol=1e-12 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("size", [1e-1, 1e-6, 1e-12])
 def test_change_keeps_its_relative_precision_however_small_the_step(
-    film: AreaFilm, x: FloatArray, size: float
+    tiling: Tiling, x: FloatArray, size: float
 ) -> None:
     """Against fifty digits, where a plain difference has as few as four."""
     after = x + size * direction(x, 3)
     with localcontext() as context:
         context.prec = 50
         exact = float(
-            sum(_exact_area(after[t]) - _exact_area(x[t]) for t in film.triangles)
+            sum(_exact_area(after[t]) - _exact_area(x[t]) for t in tiling.triangles)
         )
-    assert film.change(x, after) == pytest.approx(exact, rel=1e-11)
+    assert tiling.change(x, after) == pytest.approx(exact, rel=1e-11)
 
 
 def _exact_area(corners: FloatArray) -> Decimal:
@@ -128,20 +143,20 @@ def _exact_area(corners: FloatArray) -> Decimal:
 
 @pytest.mark.parametrize("size", [1.0, 1e-6, 1e-12])
 def test_kernel_for_differences_is_the_area_beyond_its_linear_part(
-    film: AreaFilm, x: FloatArray, size: float
+    tiling: Tiling, x: FloatArray, size: float
 ) -> None:
     """Value and gradient against the twin; in small steps it is half p H p, and H p."""
-    sides, moved = film.sides(x), size * direction(x, 4)
+    sides, moved = tiling.sides(x), size * direction(x, 4)
     gradient = np.zeros_like(x)
-    value = area_beyond_linear(moved, x, film.triangles, gradient)
+    value = area_beyond_linear(moved, x, tiling.triangles, gradient)
     if size == 1.0:
-        force = film.gradient(sides)
+        force = tiling.gradient(sides)
         linear = float(np.vdot(force, moved))
-        expected = film.change(x, x + moved) - linear
-        by_then = film.gradient(film.sides(x + moved)) - force
+        expected = tiling.change(x, x + moved) - linear
+        by_then = tiling.gradient(tiling.sides(x + moved)) - force
         tolerance = 1e-10
     else:
-        by_then = (soap_films.hessian(film, x) @ moved.ravel()).reshape(x.shape)
+        by_then = (soap_films.hessian(tiling, x) @ moved.ravel()).reshape(x.shape)
         expected = 0.5 * float(np.vdot(moved, by_then))
         # What comes next is smaller by the step over the shortest edge's height.
         tolerance = max(100 * size, 1e-9)
@@ -150,14 +165,15 @@ def test_kernel_for_differences_is_the_area_beyond_its_linear_part(
 
 
 def test_rigid_motions_change_nothing_and_lengths_scale(
-    film: AreaFilm, x: FloatArray
+    oval: DiskMesh, film: AreaFilm, x: FloatArray
 ) -> None:
+    area_at = energy_at(oval, film, 1.0)
     turn, shift = shapes.rotation(), np.array([0.3, -0.2, 0.5])
-    value, gradient = film.energy_gradient(x, 1.0)
-    moved, turned = film.energy_gradient(x @ turn.T + shift, 1.0)
+    value, gradient = area_at(x)
+    moved, turned = area_at(x @ turn.T + shift)
     assert moved == pytest.approx(value, rel=1e-13)
     np.testing.assert_allclose(turned, gradient @ turn.T, atol=1e-14)
-    larger, steeper = film.energy_gradient(8 * x, 1.0)
+    larger, steeper = area_at(8 * x)
     assert larger == 64 * value
     np.testing.assert_array_equal(steeper, 8 * gradient)
     # Neither does a motion do work: no total force, no total torque.
@@ -166,31 +182,36 @@ def test_rigid_motions_change_nothing_and_lengths_scale(
 
 
 def test_flat_film_pulls_at_nothing_inside_and_lets_its_vertices_slide(
-    oval: DiskMesh, film: AreaFilm
+    oval: DiskMesh, tiling: Tiling
 ) -> None:
-    sides = film.sides(oval.x)
-    inside = film.interior
-    assert np.abs(film.gradient(sides)[inside]).max() < 1e-15
+    sides = tiling.sides(oval.x)
+    inside = tiling.interior
+    assert np.abs(tiling.gradient(sides)[inside]).max() < 1e-15
     free = (3 * inside[:, None] + [0, 1]).ravel()
-    sliding = soap_films.hessian(film, oval.x)[:, free][free]
+    sliding = soap_films.hessian(tiling, oval.x)[:, free][free]
     assert abs(sliding).max() < 1e-13
     # Across its plane it resists: the matrix of the heights is positive definite.
-    across = film.normal_hessian(sides, np.tile([0.0, 0.0, 1.0], (len(oval.x), 1)))
+    across = tiling.normal_hessian(sides, np.tile([0.0, 0.0, 1.0], (len(oval.x), 1)))
     assert np.linalg.eigvalsh(across[:, inside][inside].toarray())[0] > 0.01
+
+
+def sides_of(disk: DiskMesh, x: FloatArray) -> TriangleGeometry:
+    return area(disk).tiling(disk.triangles).sides(x)
 
 
 def test_smallest_angle_of_known_triangles(oval: DiskMesh) -> None:
     lattice = shapes.mesh_of(*shapes.hexagon_points(3))
-    assert area(lattice).sides(lattice.x).smallest_angle == pytest.approx(60.0)
+    assert sides_of(lattice, lattice.x).smallest_angle == pytest.approx(60.0)
     right = DiskMesh.from_triangles([[0, 0, 0], [1, 0, 0], [1, 1e-3, 0]], [[0, 1, 2]])
-    angle = area(right).sides(right.x).smallest_angle
+    angle = sides_of(right, right.x).smallest_angle
     assert angle == pytest.approx(np.degrees(np.arctan(1e-3)), rel=1e-9)
-    assert area(oval).sides(0 * oval.x).smallest_angle == 0.0
+    assert sides_of(oval, 0 * oval.x).smallest_angle == 0.0
 
 
-def test_triangles_without_area_have_no_normal_and_no_pull(oval: DiskMesh) -> None:
-    film = area(oval)
-    sides = film.sides(oval.x * [1.0, 0.0, 0.0])
+def test_triangles_without_area_have_no_normal_and_no_pull(
+    oval: DiskMesh, tiling: Tiling
+) -> None:
+    sides = tiling.sides(oval.x * [1.0, 0.0, 0.0])
     assert not sides.normals.any()
     assert not sides.cotangent.any()
-    assert not film.gradient(sides).any()
+    assert not tiling.gradient(sides).any()

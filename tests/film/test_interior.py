@@ -8,11 +8,12 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import area
-from eulerplateau.film.harmonic import balance, follower, moved_with
-from eulerplateau.film.interior import Chart, Relaxed, chart_at
+from eulerplateau.film.harmonic import balance, follow_loop, follower
+from eulerplateau.film.interior import FilmAtRest, LocalFilm, local_film
+from eulerplateau.film.plane import polygon_area, polygon_gradient
+from eulerplateau.film.tiling import Tiling
 from eulerplateau.loop.loop import Loop
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.mesh.polygon import polygon_area, polygon_gradient
 from tests.helpers import shapes, twins
 
 RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1
@@ -23,67 +24,70 @@ def enneper(rings: int, radius: float = RADIUS, jitter: float = 0.2) -> DiskMesh
     return shapes.mesh_of(shapes.enneper(points, radius), triangles)
 
 
-def relaxed(mesh: DiskMesh) -> Relaxed:
-    return chart_at(area(mesh), mesh.x).relax(mesh.x[mesh.loop])
+def tiling_of(mesh: DiskMesh) -> Tiling:
+    return area(mesh).tiling(mesh.triangles)
+
+
+def relaxed(mesh: DiskMesh) -> FilmAtRest:
+    return local_film(tiling_of(mesh), mesh.x).relax(mesh.x[mesh.loop])
 
 
 @pytest.fixture(scope="module")
-def chart() -> Chart:
-    """A chart at a curved film that is not at rest, and without symmetry."""
+def local() -> LocalFilm:
+    """At a curved film that is not at rest, and without symmetry."""
     mesh = enneper(4)
     turned = shapes.rotation()
-    return chart_at(area(mesh), (mesh.x * [1.1, 1.0, 0.8]) @ turned.T)
+    return local_film(tiling_of(mesh), (mesh.x * [1.1, 1.0, 0.8]) @ turned.T)
 
 
-def test_force_on_the_loop_leaves_a_remainder_of_second_order(chart: Chart) -> None:
-    x_loop = chart.x[chart.film.loop]
+def test_force_on_the_loop_leaves_a_remainder_of_second_order(local: LocalFilm) -> None:
+    x_loop = local.x[local.tiling.loop]
 
     def condensed(x: FloatArray) -> tuple[float, FloatArray]:
-        found = chart.relax(x)
+        found = local.relax(x)
         return found.area, found.force
 
-    slope = twins.taylor_slope(condensed, x_loop, shapes.wave(len(chart.film.loop), 0.05))
+    slope = twins.taylor_slope(condensed, x_loop, shapes.wave(len(local.tiling.loop), 0.05))
     assert slope == pytest.approx(2.0, abs=0.05)
 
 
-def test_film_follows_its_loop_to_first_order(chart: Chart) -> None:
-    x_loop = chart.x[chart.film.loop]
-    here, step = chart.relax(x_loop), shapes.wave(len(chart.film.loop), 1e-5)
-    there = chart.relax(x_loop + step)
+def test_film_follows_its_loop_to_first_order(local: LocalFilm) -> None:
+    x_loop = local.x[local.tiling.loop]
+    here, step = local.relax(x_loop), shapes.wave(len(local.tiling.loop), 1e-5)
+    there = local.relax(x_loop + step)
     moved = here.displacement(step)
-    np.testing.assert_array_equal(moved[chart.film.loop], step)
+    np.testing.assert_array_equal(moved[local.tiling.loop], step)
     gap = np.abs(there.x - here.x - moved).max()
     assert gap < 1e-3 * np.abs(moved).max()
 
 
-def test_film_at_rest_has_no_force_along_the_normals_inside(chart: Chart) -> None:
-    film = chart.film
-    found = chart.relax(chart.x[film.loop] + shapes.wave(len(chart.film.loop), 0.02))
-    along = (found.gradient[film.interior] * chart.normals).sum(axis=1)
+def test_film_at_rest_has_no_force_along_the_normals_inside(local: LocalFilm) -> None:
+    film = local.tiling
+    found = local.relax(local.x[film.loop] + shapes.wave(len(local.tiling.loop), 0.02))
+    along = (found.gradient[film.interior] * local.normals).sum(axis=1)
     assert np.abs(along).max() < 1e-15
     assert (
-        found.area < film.sides(moved_with(film, chart.x, found.x[film.loop])).areas.sum()
+        found.area < film.sides(follow_loop(film, local.x, found.x[film.loop])).areas.sum()
     )
 
 
-def test_balance_is_the_force_of_a_chart_made_at_the_shape() -> None:
+def test_balance_is_the_force_of_a_film_made_at_the_shape() -> None:
     mesh = enneper(4)
     x = mesh.x
     for _ in range(10):
-        found = chart_at(area(mesh), x).relax(mesh.x[mesh.loop])
+        found = local_film(tiling_of(mesh), x).relax(mesh.x[mesh.loop])
         x = found.x
     assert found.central
-    forces = balance(area(mesh), found.x)
+    forces = balance(tiling_of(mesh), found.x)
     np.testing.assert_allclose(forces[mesh.loop], found.force, atol=1e-12)
-    # Inside nothing is left but what the chart's normals and the film's own differ by.
+    # Inside nothing is left but what the normals there and the film's own differ by.
     assert np.abs(forces[mesh.interior]).max() < 1e-12
 
 
 def test_film_on_a_flat_loop_is_its_polygon(oval: DiskMesh) -> None:
-    film = area(oval)
-    chart = chart_at(film, shapes.crumpled(oval, 1e-3) * [1.0, 1.0, 0.0])
+    local = local_film(tiling_of(oval), shapes.crumpled(oval, 1e-3) * [1.0, 1.0, 0.0])
     x_loop = oval.x[oval.loop] * [1.05, 0.9, 0.0]
-    found = chart.relax(x_loop)
+    found = local.relax(x_loop)
     assert found.area == pytest.approx(polygon_area(x_loop[:, :2]), rel=1e-14)
     np.testing.assert_allclose(
         found.force[:, :2], polygon_gradient(x_loop[:, :2]), atol=1e-15
@@ -94,7 +98,7 @@ def test_film_on_a_flat_loop_is_its_polygon(oval: DiskMesh) -> None:
 
 def test_harmonic_values_are_linear_ones_on_a_flat_film_and_within_the_loops() -> None:
     mesh = shapes.mesh_of(*shapes.disk_points(5, jitter=0.1))
-    film = area(mesh)
+    film = tiling_of(mesh)
     linear = np.column_stack([np.ones(mesh.n_v), mesh.x @ [0.3, -2.0, 0.0]])
     found = follower(film, film.sides(mesh.x)).extend(linear[mesh.loop])
     np.testing.assert_allclose(found, linear, atol=1e-14)
@@ -162,10 +166,10 @@ def test_loop_without_a_stable_film_near_by_is_refused() -> None:
         relaxed(enneper(6, 1.3, jitter=0.0))
 
 
-def test_loop_that_folds_the_film_over_is_refused(chart: Chart) -> None:
-    x_loop = chart.x[chart.film.loop]
+def test_loop_that_folds_the_film_over_is_refused(local: LocalFilm) -> None:
+    x_loop = local.x[local.tiling.loop]
     mirrored = x_loop[::-1]
     with pytest.raises(LinAlgError):
-        chart.relax(mirrored)
-    # The chart is none the worse for it.
-    assert chart.relax(x_loop).area > 0
+        local.relax(mirrored)
+    # It is none the worse for it.
+    assert local.relax(x_loop).area > 0

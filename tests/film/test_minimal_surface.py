@@ -6,32 +6,38 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.exploration import Limits, explore
+from eulerplateau.branches.exploration import Limits, explore_from
+from eulerplateau.branches.films import FilmFamily
 from eulerplateau.film.area import AreaFilm, area
-from eulerplateau.film.interior import Chart, chart_at
-from eulerplateau.film.minimal_surface import is_flat, minimal
-from eulerplateau.film.repair import flipped
+from eulerplateau.film.interior import LocalFilm, local_film
+from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
+from eulerplateau.film.quadratic import dirichlet
+from eulerplateau.film.repair import delaunay_flips
+from eulerplateau.film.tiling import Tiling
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers.equilibrium import Status
-from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes, soap_films
 
 RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1
 
 
-def enneper(rings: int, jitter: float = 0.2) -> tuple[AreaFilm, FloatArray, DiskMesh]:
+def tiling_of(mesh: DiskMesh) -> Tiling:
+    return area(mesh).tiling(mesh.triangles)
+
+
+def enneper(rings: int, jitter: float = 0.2) -> tuple[Tiling, FloatArray, DiskMesh]:
     points, triangles = shapes.disk_points(rings, jitter)
     mesh = shapes.mesh_of(shapes.enneper(points, RADIUS), triangles)
-    return area(mesh), mesh.x, mesh
+    return tiling_of(mesh), mesh.x, mesh
 
 
-def found_near(film: AreaFilm, x: FloatArray) -> tuple[AreaFilm, FloatArray]:
-    found = minimal(film, x)
+def found_near(film: Tiling, x: FloatArray) -> tuple[Tiling, FloatArray]:
+    found = find_minimal_surface(film, x)
     assert found is not None
     return found
 
 
-def pull_inside(film: AreaFilm, x: FloatArray) -> float:
+def pull_inside(film: Tiling, x: FloatArray) -> float:
     """The largest gradient of the area inside, over the largest on the loop."""
     gradient = np.abs(film.gradient(film.sides(x)))
     return float(gradient[film.interior].max() / gradient[film.loop].max())
@@ -51,7 +57,7 @@ def test_gradient_vanishes_at_every_vertex_inside_with_good_triangles(
     assert sides.areas.sum() < film.sides(x).areas.sum()
     np.testing.assert_array_equal(there[film.loop], x[film.loop])
     # Triangles are Delaunay's, and found again at once.
-    assert flipped(better, there) is better
+    assert delaunay_flips(better, there) is better
     again, same = found_near(better, there)
     assert again is better
     np.testing.assert_array_equal(same, there)
@@ -91,47 +97,47 @@ def test_waist_narrower_than_the_loops_edges_has_none() -> None:
     strip = points * [1.0, 0.12 + 0.88 * 0.1]
     x = np.column_stack([strip, 4 * strip[:, 0] * strip[:, 1]])
     mesh = shapes.mesh_of(x, triangles)
-    film = chart_at(area(mesh), mesh.x).relax(mesh.x[mesh.loop]).x
-    assert minimal(area(mesh), film) is None
+    x = local_film(tiling_of(mesh), mesh.x).relax(mesh.x[mesh.loop]).x
+    assert find_minimal_surface(tiling_of(mesh), x) is None
 
 
 def test_vertices_of_a_flat_film_are_left_where_they_are(oval: DiskMesh) -> None:
-    problem = Problem(oval, "area")
-    turned = oval.x @ shapes.rotation().T
-    assert is_flat(area(oval), turned)
-    assert problem.freed(turned) is problem
-    assert Problem(oval, "dirichlet").freed(turned).free is False
+    turned = oval.shape.moved(oval.x @ shapes.rotation().T)
+    assert is_flat(tiling_of(oval), turned.x)
+    for film in (area(oval), dirichlet(oval)):
+        of_loop = film.of_loop(turned)
+        assert of_loop.released(turned.x_loop) is of_loop
 
 
 @pytest.fixture(scope="module")
-def chart() -> Chart:
+def local() -> LocalFilm:
     film, x = found_near(*enneper(5)[:2])
-    return chart_at(film, x, free=True)
+    return local_film(film, x, free=True)
 
 
 def test_free_film_has_its_loops_gradient_and_second_variation_exactly(
-    chart: Chart,
+    local: LocalFilm,
 ) -> None:
     """The force is dA/dx_b alone, and linear but for a remainder of second order."""
-    x_loop = chart.x[chart.film.loop] + shapes.wave(len(chart.film.loop), 1e-3)
-    here = chart.relax(x_loop)
-    assert pull_inside(chart.film, here.x) < 1e-13
-    np.testing.assert_allclose(here.force, here.gradient[chart.film.loop], atol=1e-14)
-    step = shapes.wave(len(chart.film.loop), 1.0)
+    x_loop = local.x[local.tiling.loop] + shapes.wave(len(local.tiling.loop), 1e-3)
+    here = local.relax(x_loop)
+    assert pull_inside(local.tiling, here.x) < 1e-13
+    np.testing.assert_allclose(here.force, here.gradient[local.tiling.loop], atol=1e-14)
+    step = shapes.wave(len(local.tiling.loop), 1.0)
     linear = (here.hessian @ step.ravel()).reshape(step.shape)
     sizes = np.geomspace(1e-3, 1e-5, 7).tolist()
     left = [
         float(
-            np.linalg.norm(chart.relax(x_loop + t * step).force - here.force - t * linear)
+            np.linalg.norm(local.relax(x_loop + t * step).force - here.force - t * linear)
         )
         for t in sizes
     ]
     assert shapes.fitted_order(sizes, left) == pytest.approx(2.0, abs=0.1)
 
 
-def test_free_second_variation_is_the_schur_complement(chart: Chart) -> None:
-    film, x_loop = chart.film, chart.x[chart.film.loop]
-    found = chart.relax(x_loop)
+def test_free_second_variation_is_the_schur_complement(local: LocalFilm) -> None:
+    film, x_loop = local.tiling, local.x[local.tiling.loop]
+    found = local.relax(x_loop)
     whole = soap_films.hessian(film, found.x).toarray()
     i, b = ((3 * part[:, None] + [0, 1, 2]).ravel() for part in (film.interior, film.loop))
     inner = np.linalg.solve(whole[np.ix_(i, i)], whole[np.ix_(i, b)])
@@ -143,22 +149,25 @@ def test_free_second_variation_is_the_schur_complement(chart: Chart) -> None:
 def test_branch_that_leaves_the_plane_is_of_discrete_minimal_surfaces() -> None:
     mesh = soap_films.irregular_disk(9)
     start = soap_films.two_lobed(mesh, 1780.0)
-    limits = Limits(1, 2, stop=lambda point: not 1650 < point.load < 1850)
+    limits = Limits(1, 2, stop=lambda point: not 1650 < point.value < 1850)
     curved = 0
-    for visit in explore(start, soap_films.SETTINGS, limits):
-        problem, x = visit.point.problem, visit.point.film
+    for visit in explore_from(start, soap_films.CONTROL, limits):
+        family, shape = visit.point.family, soap_films.shape(visit.point)
+        assert isinstance(family, FilmFamily)
+        problem, film = family.problem, family.problem.film
         found = problem.equilibrium(
-            x, visit.point.model.multipliers, visit.point.load, Status.CONVERGED
+            shape, visit.point.model.tensions, visit.point.value, Status.CONVERGED
         )
         assert found.film_residual < 1e-12
         assert found.residual < 1e-8
-        film = problem.film
         assert isinstance(film, AreaFilm)
-        assert film.sides(x).smallest_angle > 10
+        tiling = film.tiling(shape.triangles)
+        assert tiling.sides(shape.x).smallest_angle > 10
         # Forces balance as they are, at every vertex and all three coordinates.
-        forces = problem.bending_energy(x)[1] + problem.film_energy(x, found.load)[1]
-        forces += problem.tension_force(x, found.multipliers)
-        scale = np.abs(problem.bending_energy(x)[1]).max()
-        assert np.abs(problem.unslid(x, forces)).max() < 1e-8 * scale
-        curved += not is_flat(film, x)
+        bending = problem.bending_energy(shape)[1]
+        forces = bending + film.energy_gradient(shape, found.load)[1]
+        forces += problem.tension_force(shape, found.tensions)
+        scale = np.abs(bending).max()
+        assert np.abs(problem.without_sliding(shape, forces)).max() < 1e-8 * scale
+        curved += not is_flat(tiling, shape.x)
     assert curved > 5

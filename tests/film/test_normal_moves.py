@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
-from eulerplateau.film.area_energy import AreaEnergy
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import area
-from eulerplateau.film.interior import Chart, chart_at
-from eulerplateau.loop.loop import Loop
+from eulerplateau.film.area import Area, area
+from eulerplateau.film.interior import LocalFilm, local_film
+from eulerplateau.loop import Loop, free_motions, inextensible
 from eulerplateau.mesh.disk import DiskMesh
 from tests.helpers import shapes, soap_films, twins
 
@@ -21,31 +22,35 @@ def enneper(rings: int, jitter: float) -> DiskMesh:
     return shapes.mesh_of(shapes.enneper(points, RADIUS), triangles)
 
 
+def made_at(mesh: DiskMesh, x: FloatArray) -> LocalFilm:
+    return local_film(area(mesh).tiling(mesh.triangles), x)
+
+
 @pytest.fixture(scope="module")
-def chart() -> Chart:
-    """A chart at a curved film that is not at rest, and without symmetry."""
+def local() -> LocalFilm:
+    """At a curved film that is not at rest, and without symmetry."""
     mesh = enneper(4, 0.2)
     turned = shapes.rotation()
-    return chart_at(area(mesh), (mesh.x * [1.1, 1.0, 0.8]) @ turned.T)
+    return made_at(mesh, (mesh.x * [1.1, 1.0, 0.8]) @ turned.T)
 
 
-def whole(chart: Chart, x: FloatArray) -> FloatArray:
+def whole(local: LocalFilm, x: FloatArray) -> FloatArray:
     """The Hessian by the loop (3 n_b) and then by the heights (n_i), nothing eliminated."""
-    varied, film = chart.variations, chart.film
+    varied, film = local.variations, local.tiling
     n_b, inside = len(film.loop), film.interior
     columns = np.zeros((film.n_v, 3, 3 * n_b + len(inside)))
     for d in range(3):
         columns[np.arange(film.n_v), d, 3 * varied.leader + d] = varied.weight
-    columns[inside, :, 3 * n_b + np.arange(len(inside))] = chart.normals
+    columns[inside, :, 3 * n_b + np.arange(len(inside))] = local.normals
     flat = columns.reshape(3 * film.n_v, -1)
     found: FloatArray = flat.T @ (soap_films.hessian(film, x) @ flat)
     return found
 
 
-def test_condensed_hessian_is_the_schur_complement(chart: Chart) -> None:
-    x_loop = chart.x[chart.film.loop] + shapes.wave(len(chart.film.loop), 0.01)
-    found = chart.relax(x_loop)
-    hessian, n = whole(chart, found.x), x_loop.size
+def test_condensed_hessian_is_the_schur_complement(local: LocalFilm) -> None:
+    x_loop = local.x[local.tiling.loop] + shapes.wave(len(local.tiling.loop), 0.01)
+    found = local.relax(x_loop)
+    hessian, n = whole(local, found.x), x_loop.size
     coupling = hessian[n:, :n]
     expected = hessian[:n, :n] - coupling.T @ np.linalg.solve(hessian[n:, n:], coupling)
     scale = np.abs(expected).max()
@@ -54,14 +59,16 @@ def test_condensed_hessian_is_the_schur_complement(chart: Chart) -> None:
 
 
 @pytest.mark.parametrize("load", [30.0, 3000.0])
-def test_condensed_hessian_has_the_index_of_the_whole(chart: Chart, load: float) -> None:
+def test_condensed_hessian_has_the_index_of_the_whole(
+    local: LocalFilm, load: float
+) -> None:
     """Sylvester's law: the eliminated block is positive definite, so the index stays."""
-    loop = Loop(np.full(len(chart.film.loop), 1 / len(chart.film.loop)))
-    energy = AreaEnergy(loop, chart, load)
-    x_loop = chart.x[chart.film.loop] + shapes.wave(len(chart.film.loop), 0.01)
-    condensed = energy.lagrangian_hessian(x_loop, np.zeros(len(chart.film.loop)))
-    full, n = load * whole(chart, chart.relax(x_loop).x), len(condensed)
-    full[:n, :n] += np.kron(energy.bending, np.eye(3))
+    loop = Loop(np.full(len(local.tiling.loop), 1 / len(local.tiling.loop)))
+    energy = inextensible(loop, Area(local, load), partial(free_motions, loop, slides=True))
+    x_loop = local.x[local.tiling.loop] + shapes.wave(len(local.tiling.loop), 0.01)
+    condensed = energy.lagrangian_hessian(x_loop, np.zeros(len(local.tiling.loop)))
+    full, n = load * whole(local, local.relax(x_loop).x), len(condensed)
+    full[:n, :n] += np.kron(2 * loop.bending_matrix, np.eye(3))
     indices = []
     for hessian in (condensed, full):
         values = np.linalg.eigvalsh(hessian)
@@ -72,17 +79,17 @@ def test_condensed_hessian_has_the_index_of_the_whole(chart: Chart, load: float)
 
 
 def test_hessian_of_a_flat_film_leaves_a_remainder_of_third_order(oval: DiskMesh) -> None:
-    chart = chart_at(area(oval), oval.x)
+    local = made_at(oval, oval.x)
     x_loop = oval.x[oval.loop]
-    hessian = chart.relax(x_loop).hessian
+    hessian = local.relax(x_loop).hessian
 
     def curved(x: FloatArray) -> tuple[float, FloatArray]:
         moved = (x - x_loop).ravel()
-        found, bent = chart.relax(x), hessian @ moved
+        found, bent = local.relax(x), hessian @ moved
         return found.area - 0.5 * float(moved @ bent), found.force - bent.reshape(-1, 3)
 
     # Steep enough for the film to leave its plane, and its polygon to change.
-    slope = twins.taylor_slope(curved, x_loop, shapes.wave(len(chart.film.loop), 0.05))
+    slope = twins.taylor_slope(curved, x_loop, shapes.wave(len(local.tiling.loop), 0.05))
     assert slope == pytest.approx(3.0, abs=0.1)
 
 
@@ -94,12 +101,12 @@ def test_hessian_is_the_forces_derivative_to_second_order_in_the_mesh(
     rings, gaps = [10, 14, 20, 28, 40], []
     for number in rings:
         mesh = enneper(number, jitter)
-        chart = chart_at(area(mesh), mesh.x)
+        local = made_at(mesh, mesh.x)
         x_loop = mesh.x[mesh.loop]
-        step = shapes.wave(len(chart.film.loop), 1e-4)
-        ahead, behind = chart.relax(x_loop + step), chart.relax(x_loop - step)
+        step = shapes.wave(len(local.tiling.loop), 1e-4)
+        ahead, behind = local.relax(x_loop + step), local.relax(x_loop - step)
         curvature = 0.5 * float(np.vdot(ahead.force - behind.force, step))
-        found = float(step.ravel() @ chart.relax(x_loop).hessian @ step.ravel())
+        found = float(step.ravel() @ local.relax(x_loop).hessian @ step.ravel())
         gaps.append(abs(found / curvature - 1))
     order = shapes.fitted_order([1 / number for number in rings], gaps)
     assert order == pytest.approx(2.0, abs=0.2)

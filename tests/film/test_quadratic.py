@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_array
 
-from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
 from eulerplateau.film.load import FILM_LOADS, SPRING_TENSION
-from eulerplateau.film.quadratic import FILMS, dirichlet, springs
+from eulerplateau.film.models import make_film
+from eulerplateau.film.quadratic import QuadraticFilm, dirichlet, springs
 from eulerplateau.mesh.disk import DiskMesh
 from tests.helpers import shapes, twins
 
@@ -18,13 +18,17 @@ def test_springs_are_one_on_every_edge_that_is_not_on_the_loop(oval: DiskMesh) -
     film = springs(oval)
     assert len(film.edges) == len(oval.edges) - oval.n_b
     assert (film.weights == 1).all()
-    assert film.tension_per_load == SPRING_TENSION == pytest.approx(np.sqrt(12))
-    assert FILMS["springs"] is springs
+    tension = film.load.tension_per_load
+    assert tension == SPRING_TENSION == pytest.approx(np.sqrt(12))
+    made = make_film(oval, "springs")
+    assert isinstance(made, QuadraticFilm)
+    np.testing.assert_array_equal(made.edges, film.edges)
+    np.testing.assert_array_equal(made.weights, film.weights)
 
 
 def test_laplacian_gives_the_energy_of_the_twin(oval: DiskMesh) -> None:
     x = shapes.crumpled(oval, 0.05)
-    laplacian = springs(oval).laplacian(oval.n_v)
+    laplacian = springs(oval).laplacian()
     assert isinstance(laplacian, csc_array)
     expected = twins.film_energy(oval, x, 1.0)
     assert np.sum(x * (laplacian @ x)) == pytest.approx(expected, rel=1e-13)
@@ -33,7 +37,7 @@ def test_laplacian_gives_the_energy_of_the_twin(oval: DiskMesh) -> None:
 def test_laplacian_is_semidefinite_with_constants_and_nothing_else_in_its_kernel(
     oval: DiskMesh,
 ) -> None:
-    laplacian = springs(oval).laplacian(oval.n_v).toarray()
+    laplacian = springs(oval).laplacian().toarray()
     np.testing.assert_array_equal(laplacian, laplacian.T)
     np.testing.assert_array_equal(laplacian.sum(axis=1), 0)
     values = np.linalg.eigvalsh(laplacian)
@@ -44,8 +48,8 @@ def test_laplacian_is_semidefinite_with_constants_and_nothing_else_in_its_kernel
 def test_springs_are_the_dirichlet_film_of_an_equilateral_lattice_with_2_sqrt_3_k() -> None:
     """Edge by edge, but for the loop's own edges, whose energy is constant."""
     mesh = shapes.mesh_of(*shapes.hexagon_points(4))
-    exact = dirichlet(mesh).laplacian(mesh.n_v).toarray()
-    difference = SPRING_TENSION * exact - springs(mesh).laplacian(mesh.n_v).toarray()
+    exact = dirichlet(mesh).laplacian().toarray()
+    difference = SPRING_TENSION * exact - springs(mesh).laplacian().toarray()
     around, following = mesh.loop, np.roll(mesh.loop, -1)
     # A loop edge borders one triangle where an inner one borders two: half a spring.
     for v, w in zip(around, following, strict=True):
@@ -55,14 +59,15 @@ def test_springs_are_the_dirichlet_film_of_an_equilateral_lattice_with_2_sqrt_3_
 
 
 def test_every_film_has_its_effective_tension_per_load(oval: DiskMesh) -> None:
-    for name, film in FILMS.items():
-        assert film(oval).tension_per_load == FILM_LOADS[name].tension_per_load
+    for name, load in FILM_LOADS.items():
+        film = make_film(oval, name)
+        assert film.load.tension_per_load == load.tension_per_load
 
 
 def test_dirichlet_is_half_the_integral_of_the_gradient_squared(oval: DiskMesh) -> None:
     """For a linear map x = A r it is |A|^2 times half the rest area, for the identity the
     area itself. Loop edges are part of it."""
-    laplacian = dirichlet(oval).laplacian(oval.n_v)
+    laplacian = dirichlet(oval).laplacian()
     sides = np.diff(oval.x[oval.triangles], axis=1)
     area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
     assert np.sum(oval.x * (laplacian @ oval.x)) == pytest.approx(area, rel=1e-13)
@@ -81,7 +86,7 @@ def test_dirichlet_is_the_energy_of_every_triangle_gradient_by_gradient(
         rest = oval.x[[b, c], :2] - oval.x[a, :2]
         gradient = np.linalg.solve(rest, x[[b, c]] - x[a])
         energy += 0.25 * abs(np.linalg.det(rest)) * np.sum(gradient**2)
-    laplacian = dirichlet(oval).laplacian(oval.n_v)
+    laplacian = dirichlet(oval).laplacian()
     assert np.sum(x * (laplacian @ x)) == pytest.approx(energy, rel=1e-12)
 
 
@@ -90,23 +95,10 @@ def test_obtuse_rest_triangles_have_negative_weights_in_a_film_never_negative() 
     mesh = shapes.mesh_of(points * [4.0, 1.0], triangles)
     film = dirichlet(mesh)
     assert film.weights.min() < -1.0
-    values = np.linalg.eigvalsh(film.laplacian(mesh.n_v).toarray())
+    values = np.linalg.eigvalsh(film.laplacian().toarray())
     assert values[0] > -1e-12 * values[-1]
     # Constants and nothing else cost nothing.
     assert values[1] > 1e-6 * values[-1]
-
-
-def sliver(thickness: float, shape: str) -> tuple[FloatArray, IntArray]:
-    """A disk with one triangle split at a point so near its side, or its corner."""
-    points, triangles = shapes.disk_points(4)
-    number = 20
-    i, j, k = triangles[number]
-    near = 0.5 * (points[i] + points[j]) if shape == "cap" else points[i]
-    far = points[k] if shape == "cap" else 0.5 * (points[j] + points[k])
-    new = len(points)
-    triangles[number] = i, j, new
-    split = np.vstack([triangles, [[j, k, new], [k, i, new]]])
-    return np.vstack([points, near + thickness * (far - near)]), split
 
 
 @pytest.mark.parametrize("shape", ["cap", "needle"])
@@ -117,12 +109,13 @@ def test_slivers_of_aspect_ratio_up_to_1e8_leave_the_dirichlet_film_alone(
     """A linear map is linear in a split triangle too: same energy to what rounding of a
     weight as large as 1 / thickness leaves."""
     split, whole = (
-        shapes.mesh_of(*mesh) for mesh in (sliver(thickness, shape), shapes.disk_points(4))
+        shapes.mesh_of(*mesh)
+        for mesh in (shapes.sliver(thickness, shape), shapes.disk_points(4))
     )
     x = split.x @ shapes.rotation().T * [1.0, 2.0, 3.0]
     y = whole.x @ shapes.rotation().T * [1.0, 2.0, 3.0]
-    energy = np.sum(x * (dirichlet(split).laplacian(split.n_v) @ x))
-    expected = np.sum(y * (dirichlet(whole).laplacian(whole.n_v) @ y))
+    energy = np.sum(x * (dirichlet(split).laplacian() @ x))
+    expected = np.sum(y * (dirichlet(whole).laplacian() @ y))
     assert energy == pytest.approx(expected, rel=10 * 2.3e-16 / thickness)
 
 
@@ -131,6 +124,6 @@ def test_triangle_without_a_shape_is_refused_before_it_has_weights(
     thickness: float,
 ) -> None:
     with pytest.raises(MeshError) as caught:
-        dirichlet(shapes.mesh_of(*sliver(thickness, "cap")))
+        dirichlet(shapes.mesh_of(*shapes.sliver(thickness, "cap")))
     assert caught.value.exit_code == 3
     assert (caught.value.kind, caught.value.index) == ("triangle", 20)

@@ -7,14 +7,10 @@ import pytest
 from scipy.spatial import Delaunay
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.area import AreaFilm, area
+from eulerplateau.film.area import area
 from eulerplateau.film.flip_kernels import flip_to_delaunay
-from eulerplateau.film.interior import THIN
-from eulerplateau.film.repair import (
-    carried,
-    flipped,
-    repaired,
-)
+from eulerplateau.film.repair import carry_along, delaunay_flips, mend_triangles
+from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.triangles import (
     neighbours,
@@ -22,14 +18,18 @@ from eulerplateau.mesh.triangles import (
 from tests.helpers import shapes
 
 
-def sheared(rings: int = 6) -> tuple[AreaFilm, FloatArray]:
+def tiling_of(mesh: DiskMesh) -> Tiling:
+    return area(mesh).tiling(mesh.triangles)
+
+
+def sheared(rings: int = 6) -> tuple[Tiling, FloatArray]:
     """A convex film, flat, whose triangles have been sheared along it."""
     points, triangles = shapes.disk_points(rings, jitter=0.2)
     mesh = shapes.mesh_of(points, triangles)
-    return area(mesh), mesh.x @ np.array([[1.0, 0, 0], [1.5, 1, 0], [0, 0, 1]])
+    return tiling_of(mesh), mesh.x @ np.array([[1.0, 0, 0], [1.5, 1, 0], [0, 0, 1]])
 
 
-def bent(rings: int = 6) -> tuple[AreaFilm, FloatArray]:
+def bent(rings: int = 6) -> tuple[Tiling, FloatArray]:
     """The same on Enneper's surface."""
     film, x = sheared(rings)
     return film, shapes.enneper(x[:, :2] / np.linalg.norm(x, axis=1).max(), 0.8)
@@ -39,7 +39,7 @@ def triangle_set(triangles: IntArray) -> set[frozenset[int]]:
     return {frozenset(t) for t in triangles.tolist()}
 
 
-def assert_same_disk(before: AreaFilm, after: AreaFilm, x: FloatArray) -> None:
+def assert_same_disk(before: Tiling, after: Tiling, x: FloatArray) -> None:
     mesh = DiskMesh.from_triangles(x, after.triangles)
     assert len(after.triangles) == len(before.triangles)
     np.testing.assert_array_equal(np.sort(mesh.loop), np.sort(before.loop))
@@ -63,11 +63,11 @@ def test_neighbours_are_the_triangles_that_share_a_side(make) -> None:
 
 def test_flips_lead_to_delaunays_triangles_in_a_convex_polygon() -> None:
     film, x = sheared()
-    found = flipped(film, x)
+    found = delaunay_flips(film, x)
     assert triangle_set(found.triangles) != triangle_set(film.triangles)
     assert triangle_set(found.triangles) == triangle_set(Delaunay(x[:, :2]).simplices)
     assert_same_disk(film, found, x)
-    assert flipped(found, x) is found
+    assert delaunay_flips(found, x) is found
 
 
 def test_flips_keep_the_list_of_neighbours_up_to_date() -> None:
@@ -81,10 +81,10 @@ def test_flips_keep_the_list_of_neighbours_up_to_date() -> None:
 def test_flips_leave_a_surface_of_acute_angles_sums_and_the_same_disk() -> None:
     """Opposite angles sum to pi at most: no cotangent weight is negative."""
     film, x = bent()
-    found = flipped(film, x)
+    found = delaunay_flips(film, x)
     assert_same_disk(film, found, x)
 
-    def lowest(film: AreaFilm) -> float:
+    def lowest(film: Tiling) -> float:
         """The least weight of an edge inside; L has minus half the weights beside."""
         laplacian = film.cotangent_laplacian(film.sides(x)).toarray()
         inner = np.ones((film.n_v, film.n_v), dtype=bool)
@@ -102,8 +102,8 @@ def test_flips_leave_a_surface_of_acute_angles_sums_and_the_same_disk() -> None:
 def test_repair_makes_thin_triangles_good_and_leaves_the_loop_alone(make) -> None:
     film, x = make()
     before = film.sides(x).smallest_angle
-    found, after = repaired(film, x)
-    assert before < THIN
+    found, after = mend_triangles(film, x)
+    assert before < LIMITS.thin
     assert found.sides(after).smallest_angle > 20
     np.testing.assert_array_equal(after[film.loop], x[film.loop])
     assert_same_disk(film, found, after)
@@ -114,16 +114,16 @@ def test_repair_never_makes_the_worst_angle_worse(seed: int) -> None:
     """Good meshes, bad ones and crumpled ones."""
     rng = np.random.default_rng(seed)
     mesh = shapes.mesh_of(*shapes.disk_points(5, jitter=0.1 * (seed % 3)))
-    film, x = area(mesh), mesh.x * [1.0, 1.0 + seed, 1.0]
+    film, x = tiling_of(mesh), mesh.x * [1.0, 1.0 + seed, 1.0]
     x = x + 3e-3 * (seed // 3) * rng.standard_normal(x.shape)
-    found, after = repaired(film, x)
+    found, after = mend_triangles(film, x)
     assert found.sides(after).smallest_angle >= film.sides(x).smallest_angle
     assert_same_disk(film, found, after)
 
 
 def test_repair_of_a_flat_film_keeps_its_area_to_rounding() -> None:
     film, x = sheared()
-    found, after = repaired(film, x)
+    found, after = mend_triangles(film, x)
     area_then = found.sides(after).areas.sum()
     assert area_then == pytest.approx(film.sides(x).areas.sum(), rel=1e-14)
     assert (found.sides(after).normals[:, 2] > 0).all()
@@ -134,7 +134,7 @@ def test_repair_keeps_a_curved_film_to_second_order() -> None:
     rings, changes = [6, 9, 13, 19], []
     for number in rings:
         film, x = bent(number)
-        found, after = repaired(film, x)
+        found, after = mend_triangles(film, x)
         changes.append(found.sides(after).areas.sum() - film.sides(x).areas.sum())
     order = shapes.fitted_order([1 / number for number in rings], changes)
     assert order == pytest.approx(2.0, abs=0.2)
@@ -143,10 +143,10 @@ def test_repair_keeps_a_curved_film_to_second_order() -> None:
 def test_film_is_carried_far_without_folding_over() -> None:
     """A disk becomes four times as long as it is wide, and turns by a right angle."""
     mesh = shapes.mesh_of(*shapes.disk_points(6, jitter=0.1))
-    film, x = area(mesh), mesh.x
+    film, x = tiling_of(mesh), mesh.x
     turned = x[film.loop] @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
     target = turned * [2.0, 0.5, 1.0]
-    found, after = carried(film, x, target)
+    found, after = carry_along(film, x, target)
     np.testing.assert_array_equal(after[film.loop], target)
     assert_same_disk(film, found, after)
     sides = found.sides(after)

@@ -55,6 +55,19 @@ def disk_points(rings: int, jitter: float = 0.0) -> tuple[FloatArray, IntArray]:
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1), triangles
 
 
+def sliver(thickness: float, shape: str) -> tuple[FloatArray, IntArray]:
+    """A disk with one triangle split at a point so near its side, or its corner."""
+    points, triangles = disk_points(4)
+    number = 20
+    i, j, k = triangles[number]
+    near = 0.5 * (points[i] + points[j]) if shape == "cap" else points[i]
+    far = points[k] if shape == "cap" else 0.5 * (points[j] + points[k])
+    new = len(points)
+    triangles[number] = i, j, new
+    split = np.vstack([triangles, [[j, k, new], [k, i, new]]])
+    return np.vstack([points, near + thickness * (far - near)]), split
+
+
 def flat(points: FloatArray) -> FloatArray:
     """Points (n, 2) as positions (n, 3) in the plane z = 0."""
     return np.column_stack([points, np.zeros(len(points))])

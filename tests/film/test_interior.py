@@ -7,13 +7,22 @@ import pytest
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import area
+from eulerplateau.film.area import (
+    area,
+    local_film,
+)
 from eulerplateau.film.harmonic import balance, follow_loop, follower
-from eulerplateau.film.interior import FilmAtRest, LocalFilm, local_film
-from eulerplateau.film.plane import polygon_area, polygon_gradient
+from eulerplateau.film.interior import (
+    FilmAtRest,
+    LocalFilm,
+)
 from eulerplateau.film.tiling import Tiling
 from eulerplateau.loop.loop import Loop
 from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.polygon import (
+    polygon_area,
+    polygon_gradient,
+)
 from tests.helpers import shapes, twins
 
 RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1

@@ -8,11 +8,19 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.exploration import Limits, explore_from
 from eulerplateau.branches.films import FilmFamily
-from eulerplateau.film.area import AreaFilm, area
-from eulerplateau.film.interior import LocalFilm, local_film
+from eulerplateau.film.area import (
+    AreaFilm,
+    area,
+    local_film,
+)
+from eulerplateau.film.flips import (
+    delaunay_flips,
+)
+from eulerplateau.film.interior import (
+    LocalFilm,
+)
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
 from eulerplateau.film.quadratic import dirichlet
-from eulerplateau.film.repair import delaunay_flips
 from eulerplateau.film.tiling import Tiling
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers.equilibrium import Status

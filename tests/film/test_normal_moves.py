@@ -8,8 +8,14 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import Area, area
-from eulerplateau.film.interior import LocalFilm, local_film
+from eulerplateau.film.area import (
+    Area,
+    area,
+    local_film,
+)
+from eulerplateau.film.interior import (
+    LocalFilm,
+)
 from eulerplateau.loop import Loop, free_motions, inextensible
 from eulerplateau.mesh.disk import DiskMesh
 from tests.helpers import shapes, soap_films, twins

@@ -14,13 +14,15 @@ from eulerplateau.film.plane import (
     PlaneFilm,
     PolygonArea,
     plane_film,
-    polygon_area,
-    polygon_gradient,
 )
 from eulerplateau.loop import Loop, LoopEnergy, free_motions, inextensible, project_lengths
 from eulerplateau.mesh.curvature import loop_frame
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.measures import Measurer
+from eulerplateau.mesh.polygon import (
+    polygon_area,
+    polygon_gradient,
+)
 from eulerplateau.solvers import SOLVERS, Problem, Status, solve, tangent_model
 from eulerplateau.solvers.in_plane.newton import settle_in_plane
 from tests.helpers import shapes, twins

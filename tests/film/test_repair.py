@@ -9,7 +9,13 @@ from scipy.spatial import Delaunay
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.area import area
 from eulerplateau.film.flip_kernels import flip_to_delaunay
-from eulerplateau.film.repair import carry_along, delaunay_flips, mend_triangles
+from eulerplateau.film.flips import (
+    delaunay_flips,
+)
+from eulerplateau.film.repair import (
+    carry_along,
+    mend_triangles,
+)
 from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.triangles import (

@@ -1,4 +1,4 @@
-"""What the package and its rooms show: names that stay what they are, loaded on first use."""
+"""What the package and its rooms show: names that stay what they are."""
 
 from __future__ import annotations
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.lengths import jacobian, project_lengths
 from eulerplateau.loop.motions import rigid_motions
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.condensed import loop_energy
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import LoopEnergy, TangentModel, tangent_model
 from tests.helpers import equilibria, shapes

@@ -18,7 +18,14 @@ from eulerplateau.mesh import DiskMesh, loop_frame, waist_path
 from eulerplateau.mesh.curvature import total_gauss_curvature
 from eulerplateau.mesh.waist import WaistPath, waist_twist
 from eulerplateau.runs import RunSpec
-from eulerplateau.runs.sweep import Solver, make_mesh, start_shape, sweep
+from eulerplateau.runs.start import (
+    start_shape,
+)
+from eulerplateau.runs.sweep import (
+    Solver,
+    make_mesh,
+    sweep,
+)
 from eulerplateau.settings import validate
 from eulerplateau.solvers import Equilibrium, Problem, Status, make_problem, solve
 from scripts.studies.common import processes

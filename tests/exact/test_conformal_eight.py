@@ -12,7 +12,7 @@ from eulerplateau.exact.conformal.branch import go_to_load, resolve
 from eulerplateau.exact.conformal.eight import flat_eight
 from eulerplateau.exact.conformal.eight_modes import planar_modes, transverse_modes
 from eulerplateau.exact.conformal.geometry import waist
-from eulerplateau.exact.conformal.held_waist import HeldFilm, hold, sharpened
+from eulerplateau.exact.conformal.held_waist import HeldFilm, hold, sharpen_grid
 from eulerplateau.exact.planar import planar_film, thresholds
 from tests.helpers.conformal_films import onset, twisted
 
@@ -116,7 +116,7 @@ def test_beyond_the_onset_the_energy_falls_all_the_way_as_the_waist_closes() -> 
     for change in (0.0025, -0.0025):
         last = middle
         while 0.045 < last.width < 0.115:
-            last = held(sharpened(last), load, last.width + change)
+            last = held(sharpen_grid(last), load, last.width + change)
             energies[last.width] = last.energy
             # The film pulls the strands together.
             assert last.force > 0

@@ -122,3 +122,12 @@ def test_branches_that_end_raise_the_projects_error() -> None:
     from eulerplateau.exact.conformal import BranchError
 
     assert issubclass(BranchError, EulerPlateauError)
+
+
+@pytest.mark.parametrize("load", [-1.0, nan, inf, None])
+def test_wrong_loads_of_a_branch_are_refused_at_once(load: Any) -> None:
+    from eulerplateau.exact.conformal import PLANAR, disk, go_to_load, make_basis, start
+
+    point = start(disk(make_basis(8, PLANAR), 1000.0))
+    with pytest.raises(SpecError, match=r"^load: found"):
+        go_to_load(point, load)

@@ -1,4 +1,4 @@
-"""Branches of true films: following, landing on a load, refining, locating, switching."""
+"""Branches of true films: followed, brought to a load, left where one bifurcates."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.errors import EulerPlateauError
+from eulerplateau.exact.checks import finite
 from eulerplateau.exact.conformal.basis import Family, make_basis
 from eulerplateau.exact.conformal.equilibrium import (
     ConformalFilm,
@@ -102,9 +103,23 @@ def go_to_load(
 ) -> BranchPoint:
     """Return the first point of the branch, the way `point` heads, at a load.
 
-    Raises BranchError if the branch does not get there.
+    Parameters
+    ----------
+    point : BranchPoint
+        Where to begin; `point.reversed()` heads the other way.
+    load : float
+        sigma_hat = sigma L^3 / alpha, finite and not negative.
+    largest_step : float
+        In loop lengths, or 1000 units of load.
+
+    Raises
+    ------
+    SpecError
+        If the load is no such number.
+    BranchError
+        If `max_points` do not lead to the load.
     """
-    side = np.sign(load - point.load)
+    side = np.sign(finite("load", load) - point.load)
     if side == 0:
         return point
     before = after = point
@@ -142,6 +157,13 @@ def resolve(
     """Return the same film with a tail of at most `tail`, or the least that refining gives.
 
     First the grading is sharpened, because that costs nothing, then harmonics are added.
+
+    Parameters
+    ----------
+    tail : float
+        The relative error of truncation to come to, 1e-10 say (Basis.tail).
+    most_harmonics : int
+        More are not tried; the film may then keep a larger tail.
     """
     for sharpen in (True, False):
         while point.film.tail > tail:
@@ -178,10 +200,21 @@ def locate(
 ) -> tuple[ConformalFilm, Mode]:
     """Return the film of zero eigenvalue between two neighbours of a branch, and its mode.
 
-    `family` is the symmetry of the mode. Illinois' regula falsi in the arclength, until
-    the eigenvalue is rounding or, where the branch itself is singular (a symmetry too low
-    to tell mode and branch apart), Newton's method stops: the mode's eigenvalue says how
-    close. Raises BranchError if no eigenvalue changes its sign or it is not close.
+    Illinois' regula falsi in the arclength, until the eigenvalue is rounding or, where the
+    branch itself is singular (a symmetry too low to tell mode and branch apart), Newton's
+    method stops: the mode's eigenvalue says how close.
+
+    Parameters
+    ----------
+    before, after : BranchPoint
+        Neighbours on one branch, of one basis, between which one eigenvalue changes sign.
+    family : Family
+        The symmetry of the mode.
+
+    Raises
+    ------
+    BranchError
+        If no eigenvalue changes its sign, or the film found is not close to where it does.
     """
     first, last = (modes(point.film, family) for point in (before, after))
     number = min(sum(m.eigenvalue < 0 for m in found) for found in (first, last))
@@ -225,10 +258,20 @@ def _way(before: BranchPoint, after: BranchPoint) -> float:
 def switch(film: ConformalFilm, mode: Mode, amplitude: float) -> BranchPoint:
     """Return a film of the branch that leaves `film`, a singular one, along its mode.
 
-    `amplitude` is the distance along the mode, in the norm of `inner`; it heads away from
-    `film`. Raises BranchError if Newton's method does not get there.
+    Parameters
+    ----------
+    film, mode : ConformalFilm, Mode
+        What `locate` returns.
+    amplitude : float
+        Distance along the mode in the norm of `inner`, 0.01 say; its sign chooses one of
+        the two sides. The point returned heads away from `film`.
+
+    Raises
+    ------
+    BranchError
+        If Newton's method finds no film there: a smaller amplitude may help.
     """
-    both = joined(film.basis.family, mode.basis.family)
+    both = join_symmetries(film.basis.family, mode.basis.family)
     basis = make_basis(film.basis.harmonics, both, film.basis.crowding)
     there = Direction(basis.embed(mode.basis, mode.coefficients), 0.0)
     unit = there.coefficients / np.sqrt(inner(basis, there, there))
@@ -241,7 +284,7 @@ def switch(film: ConformalFilm, mode: Mode, amplitude: float) -> BranchPoint:
     return BranchPoint(found, branch_direction(found, way))
 
 
-def joined(a: Family, b: Family) -> Family:
+def join_symmetries(a: Family, b: Family) -> Family:
     """Return the symmetry that sums of displacements of two symmetries keep."""
     union = tuple(
         tuple(dict.fromkeys((*one, *other)))

@@ -80,7 +80,7 @@ def hold(
     return None
 
 
-def sharpened(film: HeldFilm) -> HeldFilm:
+def sharpen_grid(film: HeldFilm) -> HeldFilm:
     """Return the film on a more crowded grid if its tail asks for one and that helps."""
     crowding = film.basis.crowding / 3
     if film.tail < _SHARPEN or crowding < _MOST_CROWDED:

@@ -14,7 +14,7 @@ from eulerplateau.exact.conformal import (
     make_basis,
     waist,
 )
-from eulerplateau.exact.conformal.held_waist import HeldFilm, hold, sharpened
+from eulerplateau.exact.conformal.held_waist import HeldFilm, hold, sharpen_grid
 from scripts.studies.true_film.branches import PLANAR_BUCKLING, planar_start
 
 
@@ -78,7 +78,7 @@ def swept(film: HeldFilm, change: float, least: float) -> list[HeldFilm]:
     flat = film.basis.family == PLANAR
     while last is not None and last.width > least and (flat or out_of_plane(last)):
         found.append(last)
-        last = sharpened(last)
+        last = sharpen_grid(last)
         width = last.width + change
         last = hold(last.basis, last.coefficients, last.beta, last.force, film.load, width)
     return found if flat else found[1:]

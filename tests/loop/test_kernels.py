@@ -19,23 +19,24 @@ RNG = np.random.default_rng(11)
 
 
 def film(mesh: DiskMesh) -> twins.Field:
-    problem = Problem(mesh)
-    return lambda x: problem.film_energy(x, LOAD)
+    springs = Problem(mesh).film
+    return lambda x: springs.energy_gradient(mesh.shape.moved(x), LOAD)
 
 
 def bending(mesh: DiskMesh) -> twins.Field:
-    return Problem(mesh).bending_energy
+    problem = Problem(mesh)
+    return lambda x: problem.bending_energy(mesh.shape.moved(x))
 
 
 def augmented(problem: Problem, base: FloatArray, lam: FloatArray) -> twins.Field:
     """The kernel's difference from `base`, as a function of the displacement."""
-    loop = problem.loop
-    excess = loop.constraint(base[problem.loop_vertices])
+    loop, shape = problem.loop, problem.shape(base)
+    excess = loop.constraint(shape.x_loop)
     tension = lam + PENALTY * excess / loop.rest_lengths
     at_base = (
-        problem.film_energy(base, LOAD)[1]
-        + problem.bending_energy(base)[1]
-        + problem.tension_force(base, tension)
+        problem.film.energy_gradient(shape, LOAD)[1]
+        + problem.bending_energy(shape)[1]
+        + problem.tension_force(shape, tension)
     )
 
     def difference(u: FloatArray) -> tuple[float, FloatArray]:
@@ -166,15 +167,13 @@ def test_film_scales_as_length_squared_and_bending_as_one_over_length(
     oval: DiskMesh,
 ) -> None:
     x = shapes.crumpled(oval, 0.02)
-    problem = Problem(oval)
     scale = 3.7
-    film_energy = problem.film_energy(scale * x, LOAD)[0]
-    assert film_energy == pytest.approx(scale**2 * problem.film_energy(x, LOAD)[0])
+    assert film(oval)(scale * x)[0] == pytest.approx(scale**2 * film(oval)(x)[0])
     gradient = np.zeros_like(x)
     longer = kernels.bending_energy_gradient(
         scale * x, oval.loop, scale * oval.rest_lengths, gradient
     )
-    value, force = problem.bending_energy(x)
+    value, force = bending(oval)(x)
     assert longer == pytest.approx(value / scale, rel=1e-12)
     np.testing.assert_allclose(gradient, force / scale**2, rtol=1e-9)
 

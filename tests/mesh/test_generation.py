@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.errors import EulerPlateauError, SpecError
-from eulerplateau.mesh import ALGORITHMS, MeshSpec, generation as generate, load_mesh
+from eulerplateau.mesh import ALGORITHMS, MeshSpec, generate, load_mesh
 from eulerplateau.mesh.polygon import (
     counter_clockwise,
     ellipse,
@@ -297,7 +297,7 @@ def test_meshes_are_well_shaped():
 def test_no_other_process_state_or_file_of_the_user_matters(tmp_path):
     (tmp_path / ".gmshrc").write_text("Mesh.Algorithm = 5; Mesh.MeshSizeFactor = 2;\n")
     code = (
-        "from eulerplateau.meshing import load_mesh;"
+        "from eulerplateau.mesh import load_mesh;"
         f"import sys; sys.stdout.write(load_mesh({str(MESHES / 'hexagon.toml')!r}).digest)"
     )
     done = subprocess.run(

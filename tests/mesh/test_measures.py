@@ -41,7 +41,7 @@ def degrees(t: float) -> float:
 
 def test_flat_hexagon_has_its_area_its_corners_and_nothing_else() -> None:
     mesh = shapes.mesh_of(*shapes.hexagon_points(5))
-    found = measure(mesh, mesh.x, waist_path(mesh))
+    found = measure(mesh, mesh.shape)
     assert found.area == pytest.approx(1.5 * np.sqrt(3) / 36, rel=1e-12)
     assert found.max_turning == pytest.approx(60.0, rel=1e-12)
     assert found.aspect == pytest.approx(1.0, rel=1e-12)
@@ -54,7 +54,7 @@ def test_enneper_surface_has_its_total_curvature_and_abs_kappa_n() -> None:
     radius = 0.5
     points, triangles = shapes.disk_points(48)
     mesh = shapes.mesh_of(shapes.enneper(points, radius), triangles)
-    found = measure(mesh, mesh.x, waist_path(mesh))
+    found = measure(mesh, mesh.shape)
     exact = -4 * np.pi * radius**2 / (1 + radius**2)
     assert found.abs_kappa_n == pytest.approx(8 * radius / (1 + radius**2), rel=2e-3)
     assert found.total_gauss_curvature == pytest.approx(exact, rel=0.05)
@@ -74,7 +74,7 @@ def test_largest_turning_is_the_loops_angle_at_its_sharpest_vertex(turning: floa
     edges = np.roll(x[mesh.loop], -1, axis=0) - x[mesh.loop]
     headings = np.degrees(np.arctan2(edges[:, 1], edges[:, 0]))
     expected = np.abs((headings - np.roll(headings, 1) + 180.0) % 360.0 - 180.0).max()
-    found = measure(mesh, x, waist_path(mesh)).max_turning
+    found = measure(mesh, mesh.shape.moved(x)).max_turning
     assert found == pytest.approx(expected, abs=1e-5)
 
 
@@ -201,10 +201,10 @@ def test_a_polygon_that_the_line_leaves_has_no_path_and_no_twist() -> None:
 
 def test_measures_are_invariant_under_rigid_motions() -> None:
     mesh = ellipse_mesh(10)
-    path = waist_path(mesh)
-    x = on_eight(mesh, 0.5) / 6.0
-    here = asdict(measure(mesh, x, path))
-    there = asdict(measure(mesh, x @ shapes.rotation().T + [0.1, 0.2, 0.3], path))
+    shape = mesh.shape.moved(on_eight(mesh, 0.5) / 6.0)
+    here = asdict(measure(mesh, shape))
+    turned = shape.moved(shape.x @ shapes.rotation().T + [0.1, 0.2, 0.3])
+    there = asdict(measure(mesh, turned))
     for name, value in here.items():
         assert there[name] == pytest.approx(value, rel=1e-8, abs=1e-9), name
 
@@ -214,5 +214,5 @@ def test_shape_that_is_not_finite_is_refused() -> None:
     x = mesh.x.copy()
     x[7, 2] = np.nan
     with pytest.raises(MeshError) as caught:
-        measure(mesh, x, waist_path(mesh))
+        measure(mesh, mesh.shape.moved(x))
     assert caught.value.index == 7

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import pytest
 
@@ -12,10 +10,9 @@ from eulerplateau.errors import MeshError
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.film.plane import (
     PlaneFilm,
-    PolygonArea,
     plane_film,
 )
-from eulerplateau.loop import Loop, LoopEnergy, free_motions, inextensible, project_lengths
+from eulerplateau.loop import Loop, project_lengths
 from eulerplateau.mesh.curvature import loop_frame
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.measures import Measurer
@@ -26,15 +23,10 @@ from eulerplateau.mesh.polygon import (
 from eulerplateau.solvers import SOLVERS, Problem, Status, solve, tangent_model
 from eulerplateau.solvers.in_plane.newton import settle_in_plane
 from tests.helpers import shapes, twins
-from tests.helpers.equilibria import distance_up_to_motion
+from tests.helpers.equilibria import distance_up_to_motion, energy_in_plane
 
 # Loop edges; multiples of twelve have vertices at all tips and waists of an even loop.
 EDGES = (72, 108, 168, 240)
-
-
-def energy_in_plane(loop: Loop, load: float) -> LoopEnergy:
-    motions = partial(free_motions, loop, slides=True)
-    return inextensible(loop, PolygonArea(load), motions)
 
 
 def turned(mesh: DiskMesh) -> DiskMesh:

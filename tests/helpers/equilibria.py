@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import Loop, LoopEnergy
+from eulerplateau.film import Stiffness
+from eulerplateau.film.plane import PolygonArea
+from eulerplateau.loop import Loop, LoopEnergy, free_motions, inextensible
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.solvers import Problem, Status, TangentModel, solve, tangent_model
 
@@ -21,6 +24,19 @@ def loop_energy(problem: Problem, load: float, near: Shape | None = None) -> Loo
 def spanned(problem: Problem, x_loop: FloatArray) -> Shape:
     """The film at rest on a loop (n_b, 3), near the disk."""
     return problem.film.of_loop(problem.disk.shape).shape(x_loop)
+
+
+def quadratic_energy(loop: Loop, film: FloatArray | None = None) -> LoopEnergy:
+    """Bending, and a film whose energy has the second derivatives (n_b, n_b), or none."""
+    n = len(loop.rest_lengths)
+    term = Stiffness(np.zeros((n, n)) if film is None else 0.5 * film, 1.0)
+    return inextensible(loop, term, partial(free_motions, loop, slides=False))
+
+
+def energy_in_plane(loop: Loop, load: float) -> LoopEnergy:
+    """Bending, and the area of the polygon (n_b, 2) under a tension."""
+    motions = partial(free_motions, loop, slides=True)
+    return inextensible(loop, PolygonArea(load), motions)
 
 
 def critical_point(energy: LoopEnergy, x_loop: FloatArray) -> TangentModel:

@@ -6,17 +6,13 @@ import json
 
 import numpy as np
 import pytest
-from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.sweep import run_sweep
 from eulerplateau.settings import validate
-from eulerplateau.solvers import newton
-from eulerplateau.solvers.modes import lowest_modes
-from eulerplateau.solvers.newton import solve
-from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.second_variation import tangent_model
+from eulerplateau.solvers import Problem, lowest_modes, quadratic, solve, tangent_model
 from tests.conftest import ROOT
+from tests.helpers.equilibria import loop_energy
 
 
 @pytest.mark.parametrize("dense", [True, False])
@@ -24,13 +20,13 @@ def test_lowest_mode_has_the_lowest_eigenvalue_and_keeps_lengths(
     elongated, monkeypatch, dense
 ):
     problem = Problem(elongated)
-    found = solve(problem, elongated.x, np.zeros(elongated.n_b), 700.0)
+    found = solve(problem, 700.0, elongated.x)
     if not dense:
-        monkeypatch.setattr("eulerplateau.solvers.second_variation.DENSE_LOOP", 40)
+        monkeypatch.setattr(quadratic, "DENSE_LOOP", 40)
     mode = lowest_modes(problem, found, 1)["mode_0"]
     assert np.linalg.norm(mode, axis=1).max() == pytest.approx(1.0)
     loop = problem.loop_vertices
-    model = tangent_model(loop_energy(problem, 700.0), found.x[loop])
+    model = tangent_model(loop_energy(problem, 700.0), found.shape.x_loop)
     coefficients = model.basis.T @ (mode[loop].ravel() * model.scale)
     size = float(coefficients @ coefficients)
     # Nothing of it is a rigid motion or changes a length: it lies in the tangent space.
@@ -41,7 +37,7 @@ def test_lowest_mode_has_the_lowest_eigenvalue_and_keeps_lengths(
 
 def test_mode_of_the_planar_film_at_its_onset_is_transverse(elongated):
     problem = Problem(elongated)
-    found = solve(problem, elongated.x, np.zeros(elongated.n_b), 671.0)
+    found = solve(problem, 671.0, elongated.x)
     mode = lowest_modes(problem, found, 1)["mode_0"]
     assert np.sum(mode[:, 2] ** 2) == pytest.approx(np.sum(mode**2), rel=1e-9)
 
@@ -68,4 +64,4 @@ def test_modes_are_written_when_asked_for(tmp_path):
 
 
 def test_limit_of_the_dense_model_is_above_the_papers_mesh(elongated):
-    assert elongated.n_b < newton.DENSE_LOOP
+    assert elongated.n_b < quadratic.DENSE_LOOP

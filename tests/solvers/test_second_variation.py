@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.lengths import jacobian, project_lengths
-from eulerplateau.loop.motions import rigid_motions
+from eulerplateau.loop import LoopEnergy, project_lengths, rigid_motions
+from eulerplateau.loop.lengths import jacobian
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.second_variation import LoopEnergy, TangentModel, tangent_model
+from eulerplateau.solvers import Problem, TangentModel, tangent_model
 from tests.helpers import equilibria, shapes
+from tests.helpers.equilibria import loop_energy
 
 RNG = np.random.default_rng(8)
 LOAD = 900.0
@@ -24,8 +23,9 @@ def model_at(problem: Problem, x_loop: FloatArray, load: float) -> TangentModel:
 
 def energy_of(problem: Problem, x_loop: FloatArray) -> float:
     """The energy as the kernels have it, on the relaxed film."""
-    x = problem.condensed.extend(x_loop)
-    return problem.film_energy(x, LOAD)[0] + problem.bending_energy(x)[0]
+    shape = equilibria.spanned(problem, x_loop)
+    film = problem.film.energy_gradient(shape, LOAD)[0]
+    return film + problem.bending_energy(shape)[0]
 
 
 @pytest.fixture
@@ -62,8 +62,8 @@ def test_rigid_motions_keep_lengths_and_energy(
     rows = jacobian(oval_problem.loop, bent)
     energy = loop_energy(oval_problem, LOAD)
     np.testing.assert_allclose(rows @ motions, 0, atol=1e-13)
-    work = motions.T @ (energy.matrix @ bent).ravel()
-    assert np.abs(work).max() < 1e-12 * np.abs(energy.matrix @ bent).sum()
+    pull = energy.hessian(bent) @ bent
+    assert np.abs(motions.T @ pull.ravel()).max() < 1e-12 * np.abs(pull).sum()
     assert np.linalg.matrix_rank(motions) == 6
 
 
@@ -71,13 +71,14 @@ def test_loop_energy_and_its_changes_are_those_of_the_kernels(
     oval_problem: Problem, bent: FloatArray
 ) -> None:
     energy = loop_energy(oval_problem, LOAD)
-    value = 0.5 * np.sum(bent * (energy.matrix @ bent))
+    pull = energy.hessian(bent) @ bent
+    value = 0.5 * np.sum(bent * pull)
     assert value == pytest.approx(energy_of(oval_problem, bent), rel=1e-12)
     step = 1e-3 * RNG.standard_normal(bent.shape)
     after = energy_of(oval_problem, bent + step)
     assert energy.change(bent, step) == pytest.approx(after - value, rel=1e-9)
     # At 1e-12 the energies agree in all their digits, and their difference still has some.
-    slope = float(np.sum(step * (energy.matrix @ bent)))
+    slope = float(np.sum(step * pull))
     assert energy.change(bent, 1e-9 * step) == pytest.approx(1e-9 * slope, rel=1e-6)
 
 
@@ -87,7 +88,7 @@ def leftovers(
     """What the first and second order in t leave of the energy along a projected curve."""
     first, second = [], []
     for t in sizes:
-        x = project_lengths(energy.loop, model.x + t * model.displacement(p))
+        x = energy.constraint.project(model.x + t * model.displacement(p))
         assert x is not None
         change = energy.change(model.x, x - model.x)
         first.append(change - t * model.gradient @ p)
@@ -99,7 +100,7 @@ def leftovers(
 def test_gradient_and_hessian_have_taylor_slopes_2_and_3_along_projected_curves(
     oval_problem: Problem, bent: FloatArray, seed: int
 ) -> None:
-    """Off equilibrium too, thanks to least-squares multipliers: the projection bends the
+    """Off equilibrium too, thanks to least-squares tensions: the projection bends the
     curve along the constraint's normals, and they leave no force there."""
     energy = loop_energy(oval_problem, LOAD)
     model = tangent_model(energy, bent)
@@ -113,32 +114,32 @@ def test_gradient_and_hessian_have_taylor_slopes_2_and_3_along_projected_curves(
 
 
 def test_second_derivative_of_the_energy_at_an_equilibrium_is_the_hessian(
-    oval: DiskMesh, oval_problem: Problem
+    oval_problem: Problem,
 ) -> None:
     energy = loop_energy(oval_problem, LOAD)
-    model = equilibria.planar(oval_problem, oval, [300.0, LOAD])[-1]
+    model = equilibria.planar(oval_problem, [300.0, LOAD])[-1]
     values, vectors = model.eigen
     for mode in (0, 1, 5, 20):
         t = 1e-4 / np.sqrt(1 + mode)
         change = 0.0
         for sign in (1, -1):
-            x = project_lengths(
-                energy.loop, model.x + sign * t * model.displacement(vectors[:, mode])
+            x = energy.constraint.project(
+                model.x + sign * t * model.displacement(vectors[:, mode])
             )
             assert x is not None
             change += energy.change(model.x, x - model.x)
         assert change / t**2 == pytest.approx(values[mode], rel=0.01)
 
 
-def test_multipliers_balance_the_forces_at_an_equilibrium(
-    oval: DiskMesh, oval_problem: Problem
+def test_tensions_balance_the_forces_at_an_equilibrium(
+    oval_problem: Problem,
 ) -> None:
-    model = equilibria.planar(oval_problem, oval, [300.0, LOAD])[-1]
-    x = oval_problem.condensed.extend(model.x)
+    model = equilibria.planar(oval_problem, [300.0, LOAD])[-1]
+    shape = equilibria.spanned(oval_problem, model.x)
     assert model.residual < 1e-11
-    assert oval_problem.residual(x, model.multipliers, LOAD) < 1e-10
+    assert oval_problem.residual(shape, model.tensions, LOAD) < 1e-10
     # Euler's theorem for a quadratic energy: 2 E + sum lambda_v |e_v|^2 / s_v = 0.
-    virial = np.sum(model.multipliers * oval_problem.loop.rest_lengths)
+    virial = np.sum(model.tensions * oval_problem.loop.rest_lengths)
     assert virial == pytest.approx(-2 * energy_of(oval_problem, model.x), rel=1e-9)
 
 
@@ -149,13 +150,13 @@ def test_model_turns_with_the_loop_and_stays_when_it_is_moved(
     there = model_at(oval_problem, bent @ shapes.rotation().T + [0.3, -0.2, 0.7], LOAD)
     scale = here.eigen[0][-1]
     np.testing.assert_allclose(there.eigen[0], here.eigen[0], atol=1e-11 * scale)
-    tension = np.abs(here.multipliers).max()
-    np.testing.assert_allclose(there.multipliers, here.multipliers, atol=1e-9 * tension)
+    tension = np.abs(here.tensions).max()
+    np.testing.assert_allclose(there.tensions, here.tensions, atol=1e-9 * tension)
 
 
 def test_triangle_with_two_interior_edges_has_no_freedom_left() -> None:
     """Three lengths and six rigid motions fix three vertices."""
     loop, x = equilibria.ring(3)
-    model = tangent_model(LoopEnergy(loop, 2 * loop.bending_matrix, np.zeros((3, 3))), x)
+    model = tangent_model(equilibria.quadratic_energy(loop), x)
     assert model.hessian.shape == (0, 0)
     assert model.residual < 1e-13

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.load import SPRING_TENSION
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.second_variation import (
-    LoopEnergy,
+from eulerplateau.solvers import (
+    Problem,
     Stability,
     TangentModel,
     stability,
     tangent_model,
 )
 from tests.helpers import equilibria, shapes
+from tests.helpers.equilibria import loop_energy
 
 # Mode n of an inextensible ring with energy int |x''|^2 ds and radius R = 1 / 2 pi, in the
 # norm int |p|^2 ds. The tension -2/R^2 balances the ring, so that the second variation is
@@ -62,11 +61,9 @@ def test_spectrum_of_a_free_ring_converges_to_the_analytic_one_at_second_order(
     sizes, errors = [24, 48, 96], []
     for n_b in sizes:
         loop, x = equilibria.ring(n_b)
-        model = tangent_model(
-            LoopEnergy(loop, 2 * loop.bending_matrix, np.zeros((n_b, n_b))), x
-        )
+        model = tangent_model(equilibria.quadratic_energy(loop), x)
         assert model.residual < 10 * model.rounding
-        np.testing.assert_allclose(model.multipliers, -8 * np.pi**2, rtol=10 / n_b**2)
+        np.testing.assert_allclose(model.tensions, -8 * np.pi**2, rtol=10 / n_b**2)
         flat, high = (values[2 * n - 4 : 2 * n - 2] for values in split(model, 6))
         assert flat[1] == pytest.approx(flat[0], rel=1e-8)
         assert high[1] == pytest.approx(high[0], rel=1e-8)
@@ -79,7 +76,7 @@ def test_spectrum_of_a_free_ring_converges_to_the_analytic_one_at_second_order(
 
 def test_spectrum_of_a_free_ring_has_no_zero_and_starts_with_the_planar_ellipse() -> None:
     loop, x = equilibria.ring(96)
-    model = tangent_model(LoopEnergy(loop, 2 * loop.bending_matrix, np.zeros((96, 96))), x)
+    model = tangent_model(equilibria.quadratic_energy(loop), x)
     expected = sorted(2 * [within(2), across(2), within(3), across(3)])
     np.testing.assert_allclose(model.eigen[0][:8], expected, rtol=0.01)
 
@@ -160,7 +157,7 @@ def near_zero(model: TangentModel, x: FloatArray, where: str, n: int) -> float:
 def onset(mesh: DiskMesh) -> float:
     """Load k at which the planar film first gives way, by bisection."""
     problem, low, high = Problem(mesh), 700.0, 900.0
-    x = equilibria.planar(problem, mesh, [100, 300, 500, low])[-1].x
+    x = equilibria.planar(problem, [100, 300, 500, low])[-1].x
     while high - low > 1e-3:
         middle = 0.5 * (low + high)
         model = equilibria.critical_point(loop_energy(problem, middle), x)
@@ -196,17 +193,17 @@ def test_neutral_and_unstable_are_told_apart_by_the_error_bound() -> None:
 
 def test_loop_without_freedom_is_stable() -> None:
     loop, x = equilibria.ring(3)
-    model = tangent_model(LoopEnergy(loop, 2 * loop.bending_matrix, np.zeros((3, 3))), x)
+    model = tangent_model(equilibria.quadratic_energy(loop), x)
     found = stability(model)
     assert (found.n_unstable, found.n_neutral, found.lowest) == (0, 0, np.inf)
 
 
 def test_error_bound_covers_what_a_rotation_changes_the_eigenvalues_by(
-    oval: DiskMesh, oval_problem: Problem
+    oval_problem: Problem,
 ) -> None:
     """Exactly equal but for rounding, and rounding is what the bound is for."""
     energy = loop_energy(oval_problem, 700.0)
-    model = equilibria.planar(oval_problem, oval, [300.0, 700.0])[-1]
+    model = equilibria.planar(oval_problem, [300.0, 700.0])[-1]
     here = stability(model)
     turned = stability(tangent_model(energy, model.x @ shapes.rotation().T))
     assert np.abs(here.eigenvalues - turned.eigenvalues).max() < 10 * here.error_bound

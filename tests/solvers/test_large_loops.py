@@ -13,6 +13,7 @@ from eulerplateau.solvers import (
     Problem,
     TangentModel,
     quadratic,
+    quadratic_models,
     solve,
     stability,
     tangent_model,
@@ -197,13 +198,19 @@ def test_double_eigenvalues_of_a_disk_are_counted_twice(
     np.testing.assert_allclose(found.eigenvalues, expected, rtol=1e-7)
 
 
+def set_dense_loop(monkeypatch: pytest.MonkeyPatch, largest: int) -> None:
+    """Look at loops of more vertices on subspaces, and smooth them on a coarse one."""
+    for module in (quadratic, quadratic_models):
+        monkeypatch.setattr(module, "DENSE_LOOP", largest)
+
+
 def test_newton_by_subspaces_reaches_what_the_dense_newton_reaches(
     elongated: DiskMesh, problem: Problem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     start = shapes.crumpled(elongated, 1e-3)
     found = {}
     for name, largest in (("dense", elongated.n_b), ("subspace", 40)):
-        monkeypatch.setattr(quadratic, "DENSE_LOOP", largest)
+        set_dense_loop(monkeypatch, largest)
         x, found[name] = start, []
         for load in (1.0, 300.0, 650.0, 700.0, 800.0, 1500.0, 2500.0):
             found[name].append(solve(problem, load, x))
@@ -221,7 +228,7 @@ def test_newton_by_subspaces_reaches_what_the_dense_newton_reaches(
 def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_subspaces(
     hexagon: DiskMesh, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(quadratic, "DENSE_LOOP", 40)
+    set_dense_loop(monkeypatch, 40)
     problem = Problem(hexagon)
     x = shapes.crumpled(hexagon, 1e-3)
     for load in (800.0, 860.0, 900.0, 1000.0):

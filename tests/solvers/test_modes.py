@@ -10,7 +10,13 @@ import pytest
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.sweep import run_sweep
 from eulerplateau.settings import validate
-from eulerplateau.solvers import Problem, lowest_modes, quadratic, solve, tangent_model
+from eulerplateau.solvers import (
+    Problem,
+    lowest_modes,
+    quadratic_models,
+    solve,
+    tangent_model,
+)
 from tests.conftest import ROOT
 from tests.helpers.equilibria import loop_energy
 
@@ -22,7 +28,7 @@ def test_lowest_mode_has_the_lowest_eigenvalue_and_keeps_lengths(
     problem = Problem(elongated)
     found = solve(problem, 700.0, elongated.x)
     if not dense:
-        monkeypatch.setattr(quadratic, "DENSE_LOOP", 40)
+        monkeypatch.setattr(quadratic_models, "DENSE_LOOP", 40)
     mode = lowest_modes(problem, found, 1)["mode_0"]
     assert np.linalg.norm(mode, axis=1).max() == pytest.approx(1.0)
     loop = problem.loop_vertices
@@ -64,4 +70,4 @@ def test_modes_are_written_when_asked_for(tmp_path):
 
 
 def test_limit_of_the_dense_model_is_above_the_papers_mesh(elongated):
-    assert elongated.n_b < quadratic.DENSE_LOOP
+    assert elongated.n_b < quadratic_models.DENSE_LOOP

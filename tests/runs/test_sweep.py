@@ -11,24 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError, OutputError, SpecError
 from eulerplateau.mesh import write_mesh
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.files import read_triangles
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.start import (
-    start_shape,
-)
-from eulerplateau.runs.sweep import (
-    make_solver,
-    run_sweep,
-    sweep,
-)
+from eulerplateau.runs.sweep import run_sweep, start_shape
 from eulerplateau.runs.table import Row, read_rows
 from eulerplateau.settings import validate
-from eulerplateau.solvers.equilibrium import Equilibrium, Status
-from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers import Problem, Status, solve
 from tests.helpers import equilibria
 
 Spec = Callable[..., RunSpec]
@@ -110,49 +101,6 @@ def test_rows_carry_the_effective_tension_and_both_energies(
         assert row.n_unstable == 0
 
 
-def test_every_load_starts_from_the_last_shape_and_the_last_multipliers(
-    oval: DiskMesh, oval_problem: Problem
-) -> None:
-    starts = []
-
-    def solver(
-        problem: Problem, x: FloatArray, multipliers: FloatArray, load: float
-    ) -> Equilibrium:
-        starts.append((x, multipliers))
-        return problem.equilibrium(x + 1, multipliers + load, load, Status.CONVERGED)
-
-    found = list(sweep(oval_problem, oval.x, [3.0, 5.0, 4.0], solver))
-    assert [result.load for result in found] == [3.0, 5.0, 4.0]
-    np.testing.assert_array_equal(starts[0][0], oval.x)
-    np.testing.assert_array_equal(starts[0][1], 0)
-    for (x, multipliers), last in zip(starts[1:], found, strict=False):
-        assert x is last.x
-        assert multipliers is last.multipliers
-
-
-def test_shape_that_is_not_finite_is_recorded_and_not_started_from(
-    oval: DiskMesh, oval_problem: Problem
-) -> None:
-    starts = []
-
-    def solver(
-        problem: Problem, x: FloatArray, multipliers: FloatArray, load: float
-    ) -> Equilibrium:
-        starts.append(x)
-        bad = np.full_like(x, np.nan) if load == 2 else x + load
-        status = Status.NOT_FINITE if load == 2 else Status.CONVERGED
-        record = problem.equilibrium(x, multipliers, load, status)
-        return replace(record, x=bad)
-
-    found = list(sweep(oval_problem, oval.x, [1.0, 2.0, 3.0], solver))
-    assert [result.status.value for result in found] == [
-        "converged",
-        "not_finite",
-        "converged",
-    ]
-    assert starts[2] is starts[1] is found[0].x
-
-
 def test_up_and_down_agree_where_there_is_one_equilibrium(
     tmp_path: Path, spec: Spec
 ) -> None:
@@ -167,20 +115,20 @@ def test_start_is_the_flat_mesh_displaced_across_its_plane_by_the_seeds_noise(
     oval: DiskMesh, spec: Spec
 ) -> None:
     run = spec([1], start={"displacement": 2e-3, "seed": 3})
-    shape = start_shape(run, oval)
-    offset = shape - oval.x
+    x = start_shape(run, oval).x
+    offset = x - oval.x
     np.testing.assert_array_equal(offset[:, :2], 0)
     assert offset[:, 2].std() == pytest.approx(2e-3, rel=0.2)
-    np.testing.assert_array_equal(shape, start_shape(run, oval))
+    np.testing.assert_array_equal(x, start_shape(run, oval).x)
     other = start_shape(spec([1], start={"displacement": 2e-3, "seed": 4}), oval)
-    assert np.abs(other - shape).max() > 1e-3
+    assert np.abs(other.x - x).max() > 1e-3
 
 
 def test_start_is_displaced_across_the_plane_wherever_the_plane_lies(
     oval: DiskMesh, spec: Spec
 ) -> None:
     tilted = replace(oval, x=oval.x[:, [2, 0, 1]])
-    offset = start_shape(spec([1]), tilted) - tilted.x
+    offset = start_shape(spec([1]), tilted).x - tilted.x
     np.testing.assert_allclose(offset[:, 1:], 0, atol=1e-15)
     assert np.abs(offset[:, 0]).max() > 1e-3
 
@@ -271,11 +219,13 @@ def test_saved_shapes_are_the_equilibria_of_their_rows(
     row = run_sweep(spec([900]), tmp_path / "out").rows[0]
     points, _ = read_triangles(tmp_path / "out" / "shapes" / "shape_0000.vtp")
     problem = Problem(oval)
-    energy = problem.film_energy(points, 900.0)[0] + problem.bending_energy(points)[0]
+    shape = problem.shape(points)
+    film = problem.film.energy_gradient(shape, 900.0)[0]
+    energy = film + problem.bending_energy(shape)[0]
     assert energy == pytest.approx(row.energy, rel=1e-12)
-    assert problem.length_error(points) < 1e-12
-    again = make_solver(spec([1]))(problem, points, np.zeros(oval.n_b), 900.0)
-    assert equilibria.distance_up_to_motion(again.x, points) < 1e-6
+    assert problem.length_error(shape) < 1e-12
+    again = solve(problem, 900.0, shape)
+    assert equilibria.distance_up_to_motion(again.shape.x, points) < 1e-6
 
 
 def test_broken_mesh_missing_mesh_and_unwritable_folder_are_told_apart(

@@ -12,11 +12,11 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.continuation import advance, follow
-from eulerplateau.branches.point import BranchPoint, Settings, along, load_derivative
+from eulerplateau.branches.point import BranchPoint, along, parameter_slope
 from eulerplateau.branches.symmetry import loop_distance
-from eulerplateau.solvers import newton
+from eulerplateau.solvers import solve
 from tests.helpers import diagram
-from tests.helpers.diagram import SETTINGS, Diagram
+from tests.helpers.diagram import CONTROL, Diagram
 from tests.helpers.shapes import fitted_order
 
 # Far enough to rise above rounding, near enough for the leading order.
@@ -38,37 +38,34 @@ def some(found: Diagram) -> list[BranchPoint]:
 
 def test_every_point_is_an_equilibrium_on_the_whole_mesh(found: Diagram) -> None:
     for visit in found.visits:
-        x = found.film(visit.point)
-        assert found.problem.length_error(x) < 1e-12
-        forces = found.problem.residual(x, visit.point.model.multipliers, visit.point.load)
+        shape, point = found.shape(visit.point), visit.point
+        assert found.problem.length_error(shape) < 1e-12
+        forces = found.problem.residual(shape, point.model.tensions, point.value)
         assert forces < 1e-9
 
 
-def test_directions_solve_the_linearised_equations(
-    found: Diagram, some: list[BranchPoint]
-) -> None:
+def test_directions_solve_the_linearised_equations(some: list[BranchPoint]) -> None:
     """H p + b l' = 0, of unit arclength."""
     for point in some:
         p = point.direction.displacement.ravel() * point.model.scale
         bent = point.model.hessian @ (point.model.basis.T @ p)
-        pulled = load_derivative(found.problem, point.model) * point.direction.load
+        slope = parameter_slope(point.family, point.energy, point.model)
+        pulled = slope * point.direction.rate
         assert np.abs(bent + pulled).max() < 1e-8 * np.abs(pulled).max()
-        assert p @ p + (point.direction.load / SETTINGS.load_unit) ** 2 == pytest.approx(
-            1.0
-        )
+        assert p @ p + (point.direction.rate / CONTROL.unit) ** 2 == pytest.approx(1.0)
 
 
-def test_directions_are_tangents(found: Diagram, some: list[BranchPoint]) -> None:
+def test_directions_are_tangents(some: list[BranchPoint]) -> None:
     """A point at arclength h lies h along the direction, to second order in h."""
     for point in some:
         gaps = []
         for step in STEPS:
-            after = advance(point, step, SETTINGS)
+            after = advance(point, step, CONTROL)
             assert after is not None
             gap = after.x - point.x - step * point.direction.displacement
             gaps.append(float(np.linalg.norm(gap)))
-            assert along(point, after, SETTINGS) == pytest.approx(step)
-        if point.direction.load < 0.999 * SETTINGS.load_unit:
+            assert along(point, after, CONTROL) == pytest.approx(step)
+        if point.direction.rate < 0.999 * CONTROL.unit:
             assert fitted_order(STEPS, gaps) == pytest.approx(2.0, abs=0.1)
 
 
@@ -77,14 +74,14 @@ def test_steps_of_any_length_give_minima_that_newton_confirms(
     found: Diagram, part: float
 ) -> None:
     """The planar branch up to its onset and the twisted branch from end to end."""
-    settings = replace(
-        SETTINGS,
-        first_step=part * SETTINGS.first_step,
-        largest_step=part * SETTINGS.largest_step,
+    control = replace(
+        CONTROL,
+        first_step=part * CONTROL.first_step,
+        largest_step=part * CONTROL.largest_step,
     )
     for number, last in ((0, 650.0), (1, 750.0)):
         start = found.branch(number)[0].point
-        points = follow(start, settings)
+        points = follow(start, control)
         before = list(takewhile(partial(is_below, last), points))
         assert len(before) >= 5
         for point in before:
@@ -94,67 +91,67 @@ def test_steps_of_any_length_give_minima_that_newton_confirms(
 
 
 def is_below(load: float, point: BranchPoint) -> bool:
-    return point.load < load
+    return point.value < load
 
 
 def newton_energy(found: Diagram, near: BranchPoint) -> float:
     noise = np.random.default_rng(3).standard_normal(found.mesh.x.shape)
-    start = found.film(near) + 1e-4 * noise
-    solved = newton.solve(found.problem, start, np.zeros(found.mesh.n_b), near.load)
+    start = found.shape(near).x + 1e-4 * noise
+    solved = solve(found.problem, near.value, start)
     assert solved.converged
     return solved.energy
 
 
 def test_branches_end_outside_the_window_or_where_told(found: Diagram) -> None:
     start = found.branch(0)[0].point
-    narrow = replace(SETTINGS, load_range=(1.0, 300.0))
-    loads = [point.load for point in follow(start, narrow)]
+    narrow = replace(CONTROL, window=(1.0, 300.0))
+    loads = [point.value for point in follow(start, narrow)]
     assert loads == sorted(loads)
     assert all(load <= 300.0 for load in loads[:-1])
     assert loads[-1] > 300.0
-    few = replace(SETTINGS, max_points=3)
+    few = replace(CONTROL, max_points=3)
     assert len(list(follow(start, few))) == 3
-    stopped = list(follow(start, SETTINGS, lambda at: at.load > 100.0))
-    assert [point.load > 100.0 for point in stopped[-2:]] == [False, True]
+    stopped = list(follow(start, CONTROL, lambda at: at.value > 100.0))
+    assert [point.value > 100.0 for point in stopped[-2:]] == [False, True]
 
 
 def test_reversed_branch_is_the_same_branch(found: Diagram) -> None:
     """There and back: the same load and the same loop."""
     start = diagram.regular(found.branch(1))[4]
-    there = advance(start, 5e-3, SETTINGS)
+    there = advance(start, 5e-3, CONTROL)
     assert there is not None
     turned = replace(there, direction=there.direction.reversed())
-    reach = along(turned, start, SETTINGS)
-    back = advance(turned, reach, SETTINGS)
+    reach = along(turned, start, CONTROL)
+    back = advance(turned, reach, CONTROL)
     assert back is not None
-    assert back.load == pytest.approx(start.load, rel=1e-10)
+    assert back.value == pytest.approx(start.value, rel=1e-10)
     assert loop_distance(back.x, start.x) < 1e-8
 
 
 def test_arclength_grows_by_the_distance_gone(found: Diagram) -> None:
     for before, after in pairwise(diagram.regular(found.branch(1))):
-        moved = along(before, after, SETTINGS)
+        moved = along(before, after, CONTROL)
         assert after.arclength - before.arclength == pytest.approx(moved, rel=1e-6)
 
 
 def test_folds_are_passed() -> None:
     """The load falls, turns and rises; the shape goes on changing the same way."""
     points = list(folding())
-    rates = np.array([point.direction.load for point in points])
+    rates = np.array([point.direction.rate for point in points])
     assert (rates[0] < 0) & (rates[-1] > 0)
     assert np.sum(np.diff(np.sign(rates)) != 0) == 1
     lengths = [longest_extent(point.x) for point in points]
-    turn = int(np.argmin([point.load for point in points]))
+    turn = int(np.argmin([point.value for point in points]))
     around = lengths[turn - 3 : turn + 4]
     assert around == sorted(around)
     # Two equilibria of one load, one from each side of the fold.
-    low, high = points[turn].load, min(points[0].load, points[-1].load)
+    low, high = points[turn].value, min(points[0].value, points[-1].value)
     assert low < high
 
 
 def folding() -> Iterator[BranchPoint]:
-    _, start, settings = diagram.folding_branch()
-    return islice(follow(start, settings), 20)
+    _, start, control = diagram.folding_branch()
+    return islice(follow(start, control), 20)
 
 
 def longest_extent(x: FloatArray) -> float:
@@ -164,6 +161,5 @@ def longest_extent(x: FloatArray) -> float:
 def test_no_step_where_there_is_no_branch(found: Diagram) -> None:
     """An arclength far beyond the film's size is refused, and no NaN comes back."""
     start = found.branch(0)[0].point
-    settings: Settings = SETTINGS
     for step in (50.0, -50.0):
-        assert advance(start, step, settings) is None
+        assert advance(start, step, CONTROL) is None

@@ -11,12 +11,12 @@ import pytest
 import scipy.linalg
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.exploration import Limits, Visit, explore
+from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.branches.special import SpecialPoint
 from eulerplateau.loop.motions import rigid_motions
 from tests.helpers import diagram
-from tests.helpers.diagram import SETTINGS, Diagram
+from tests.helpers.diagram import CONTROL, Diagram
 
 
 @pytest.fixture(scope="module")
@@ -46,10 +46,10 @@ def index(point: BranchPoint) -> int:
 def test_planar_branch_is_stable_up_to_the_twist(
     found: Diagram, points: tuple[SpecialPoint, ...]
 ) -> None:
-    twist = points[0].point.load
+    twist = points[0].point.value
     for point in diagram.regular(found.branch(0)):
         assert thickness(point) < 1e-9
-        assert (index(point) == 0) == (point.load < twist)
+        assert (index(point) == 0) == (point.value < twist)
 
 
 def test_twisted_branch_runs_from_the_plane_to_the_eight_on_both_sides(
@@ -68,9 +68,9 @@ def test_twisted_branch_runs_from_the_plane_to_the_eight_on_both_sides(
         assert all(0 < turned * angle < 180 for angle in twists)
         assert sorted(twists, key=abs) == twists
         assert all(index(point) == 0 for point in regular)
-        loads = [point.load for point in regular]
-        assert min(loads) > twist.point.load
-        assert max(loads) < untwist.point.load
+        loads = [point.value for point in regular]
+        assert min(loads) > twist.point.value
+        assert max(loads) < untwist.point.value
 
 
 def test_eight_is_stable_between_the_twist_and_the_bend(
@@ -79,14 +79,14 @@ def test_eight_is_stable_between_the_twist_and_the_bend(
     """A planar film with half a turn, at all loads; its window is the paper's."""
     _, untwist, bend = points
     down, up = sorted(
-        found.from_special(number_of(found, untwist)), key=lambda b: b[0].point.load
+        found.from_special(number_of(found, untwist)), key=lambda b: b[0].point.value
     )
-    assert down[-1].point.load < 5.0
-    assert up[-1].point.load > 3000.0
+    assert down[-1].point.value < 5.0
+    assert up[-1].point.value > 3000.0
     for point in diagram.regular(down + up):
         assert thickness(point) < 1e-9
         assert abs(found.twist(point)) == pytest.approx(180.0, abs=1e-6)
-        inside = untwist.point.load < point.load < bend.point.load
+        inside = untwist.point.value < point.value < bend.point.value
         assert index(point) == (0 if inside else 1)
 
 
@@ -103,7 +103,7 @@ def test_branch_that_leaves_the_eight_is_stable_and_bent(
     for side in sides:
         regular = diagram.regular(side)
         assert all(index(point) == 0 for point in regular)
-        assert all(point.load > bend.point.load for point in regular)
+        assert all(point.value > bend.point.value for point in regular)
         assert all(thickness(point) > 0.01 for point in regular)
 
 
@@ -122,7 +122,7 @@ def test_numbers_count_the_special_points(found: Diagram) -> None:
         if visit.known:
             assert visit.number is not None
             first = found.specials[visit.number]
-            assert visit.point.load == pytest.approx(first.point.load, rel=1e-8)
+            assert visit.point.value == pytest.approx(first.point.value, rel=1e-8)
 
 
 def test_branches_start_from_special_points_found_before(found: Diagram) -> None:
@@ -139,11 +139,11 @@ def test_arclength_rises_along_each_branch(found: Diagram) -> None:
         assert lengths == sorted(set(lengths))
 
 
-def short(found: Diagram, limits: Limits) -> Iterator[Visit]:
+def short(found: Diagram, limits: Limits) -> Iterator[DiagramPoint]:
     """Explore loads around the twisted saddle only."""
-    settings = replace(SETTINGS, load_range=(600.0, 1000.0))
-    start = diagram.stable_point(found.problem, found.mesh, 610.0, settings)
-    return explore(start, settings, limits)
+    control = replace(CONTROL, window=(600.0, 1000.0))
+    start = diagram.stable_point(found.problem, 610.0, control)
+    return explore_from(start, control, limits)
 
 
 @pytest.mark.parametrize(("allowed", "branches"), [(0, 1), (1, 3), (2, 5)])
@@ -160,14 +160,14 @@ def test_limit_on_unstable_modes_is_kept(found: Diagram) -> None:
     visits = list(short(found, Limits(special_points=0, unstable_modes=0)))
     indices = [index(visit.point) for visit in visits if visit.special is None]
     assert indices == [0] * (len(indices) - 1) + [1]
-    assert max(visit.point.load for visit in visits) < 1000.0
+    assert max(visit.point.value for visit in visits) < 1000.0
 
 
 def test_predicate_ends_each_branch(found: Diagram) -> None:
-    limits = Limits(special_points=1, stop=lambda point: point.load > 690.0)
+    limits = Limits(special_points=1, stop=lambda point: point.value > 690.0)
     visits = list(short(found, limits))
     for number in {visit.branch for visit in visits}:
-        loads = [v.point.load for v in visits if v.branch == number and v.special is None]
+        loads = [v.point.value for v in visits if v.branch == number and v.special is None]
         assert [load > 690.0 for load in loads] == [False] * (len(loads) - 1) + [True]
 
 
@@ -191,15 +191,17 @@ def test_index_agrees_with_a_dense_count_on_the_whole_mesh(found: Diagram) -> No
 
 def whole_spectrum(found: Diagram, point: BranchPoint) -> FloatArray:
     """Spectrum of the Lagrangian's second variation on the constraint's tangent space."""
-    problem, x = found.problem, found.film(point)
+    problem, shape = found.problem, found.shape(point)
+    x = shape.x
     n, along_z = len(x), np.zeros_like(x)
     hessian = np.empty((n, n))
     for v in range(n):
         # Quadratic energies: the gradient at a unit vector is a column of the Hessian.
         along_z[v, 2] = 1.0
-        force = problem.film_energy(along_z, point.load)[1]
-        force = force + problem.bending_energy(along_z)[1]
-        force = force + problem.tension_force(along_z, point.model.multipliers)
+        column = shape.moved(along_z)
+        force = problem.film.energy_gradient(column, point.value)[1]
+        force = force + problem.bending_energy(column)[1]
+        force = force + problem.tension_force(column, point.model.tensions)
         hessian[:, v] = force[:, 2]
         along_z[v, 2] = 0.0
     tangent = scipy.linalg.null_space(

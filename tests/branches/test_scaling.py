@@ -11,9 +11,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.scaling import PowerLaw, fit_power
 from eulerplateau.mesh.curvature import loop_frame, total_gauss_curvature
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.runs.sweep import sweep
-from eulerplateau.solvers.newton import solve
-from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers import Problem, solve, sweep
 
 # Relative distances from the onset. Nearer, double precision leaves open where a hexagon's
 # saddle turns to; farther, b eps is no longer the only correction.
@@ -37,8 +35,8 @@ def critical_load(mesh: DiskMesh) -> float:
     stays below it.
     """
     problem = Problem(mesh)
-    first = solve(problem, mesh.x, np.zeros(mesh.n_b), 600.0)
-    found = solve(problem, first.x, first.multipliers, 610.0)
+    first = solve(problem, 600.0, mesh.shape)
+    found = solve(problem, 610.0, first)
     while True:
         assert first.lowest_eigenvalue is not None
         assert found.lowest_eigenvalue is not None
@@ -49,7 +47,7 @@ def critical_load(mesh: DiskMesh) -> float:
         if crossing - found.load < 1e-6 * crossing:
             return crossing
         load = found.load + 0.9 * (crossing - found.load)
-        first, found = found, solve(problem, found.x, found.multipliers, load)
+        first, found = found, solve(problem, load, found)
 
 
 def measured(mesh: DiskMesh) -> Onset:
@@ -59,12 +57,12 @@ def measured(mesh: DiskMesh) -> Onset:
     noise = 1e-3 * np.random.default_rng(1).standard_normal(mesh.n_v)
     start = mesh.x + np.outer(noise, [0.0, 0.0, 1.0])
     curvatures = []
-    for found in sweep(Problem(mesh), start, loads.tolist(), solve):
+    for found in sweep(Problem(mesh), loads.tolist(), start):
         # Not n_unstable: a hexagon's saddle turns for nothing, which has no sign.
         assert found.residual < 1e-7
-        frame = loop_frame(mesh, found.x)
+        frame = loop_frame(mesh, found.shape.x)
         bent = float(np.abs(frame.kappa_n) @ frame.mean_lengths)
-        curvatures.append((bent, total_gauss_curvature(mesh, found.x)))
+        curvatures.append((bent, total_gauss_curvature(mesh, found.shape.x)))
     return Onset(onset, loads, *np.array(curvatures).T)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.continuation import advance, follow
-from eulerplateau.branches.point import BranchPoint, Settings
+from eulerplateau.branches.point import BranchPoint, StepControl
 from eulerplateau.branches.special import (
     BIFURCATION,
     FOLD,
@@ -22,7 +22,7 @@ from eulerplateau.branches.symmetry import OPERATIONS, loop_distance
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers.problem import Problem
 from tests.helpers import diagram
-from tests.helpers.diagram import SETTINGS, Diagram
+from tests.helpers.diagram import CONTROL, Diagram
 from tests.helpers.equilibria import planar
 from tests.helpers.shapes import fitted_order
 
@@ -41,12 +41,10 @@ def onset(found: Diagram) -> SpecialPoint:
     return found.specials[0]
 
 
-def specials_along(
-    problem: Problem, start: BranchPoint, settings: Settings
-) -> list[SpecialPoint]:
+def specials_along(start: BranchPoint, control: StepControl) -> list[SpecialPoint]:
     before, specials = start, []
-    for after in follow(start, settings):
-        specials += special_points(before, after, settings)
+    for after in follow(start, control):
+        specials += special_points(before, after, control)
         before = after
     return specials
 
@@ -55,7 +53,7 @@ def test_critical_eigenvalue_vanishes_within_its_error_bound(found: Diagram) -> 
     assert len(found.specials) >= 4
     for special in found.specials:
         assert abs(special.eigenvalue) <= special.point.stability.error_bound
-        assert special.load_error < PRECISION * special.point.load
+        assert special.error < PRECISION * special.point.value
 
 
 def test_mode_is_the_critical_one(found: Diagram) -> None:
@@ -74,12 +72,12 @@ def test_loads_agree_with_interpolated_eigenvalues(
 ) -> None:
     """The planar state at two close loads, found without continuation."""
     special = found.specials[number]
-    close = special.point.load + np.array([-0.05, 0.05])
-    states = planar(found.problem, found.mesh, [*np.arange(300.0, close[0], 200.0), *close])
+    close = special.point.value + np.array([-0.05, 0.05])
+    states = planar(found.problem, [*np.arange(300.0, close[0], 200.0), *close])
     low, high = (model.eigen[0][mode] for model in states[-2:])
     assert low * high < 0
     crossing = close[0] + (close[1] - close[0]) * low / (low - high)
-    assert crossing == pytest.approx(special.point.load, rel=PRECISION)
+    assert crossing == pytest.approx(special.point.value, rel=PRECISION)
 
 
 @pytest.mark.parametrize(
@@ -88,10 +86,10 @@ def test_loads_agree_with_interpolated_eigenvalues(
 def test_onset_does_not_depend_on_window_start_or_step(
     found: Diagram, onset: SpecialPoint, low: float, high: float, step: float
 ) -> None:
-    settings = Settings((low, high), high, first_step=step, largest_step=step)
-    start = diagram.stable_point(found.problem, found.mesh, low, settings)
-    first, *_ = specials_along(found.problem, start, settings)
-    assert first.point.load == pytest.approx(onset.point.load, rel=PRECISION)
+    control = StepControl((low, high), high, first_step=step, largest_step=step)
+    start = diagram.stable_point(found.problem, low, control)
+    first, *_ = specials_along(start, control)
+    assert first.point.value == pytest.approx(onset.point.value, rel=PRECISION)
     assert first.symmetry.breaks == onset.symmetry.breaks
 
 
@@ -101,8 +99,8 @@ def test_both_ends_of_a_branch_find_the_same_points(found: Diagram) -> None:
     assert len(met) >= 2
     first, *others = met
     for other in others:
-        error = first.load_error + other.load_error
-        assert abs(other.point.load - first.point.load) <= error
+        error = first.error + other.error
+        assert abs(other.point.value - first.point.value) <= error
 
 
 def test_index_changes_by_the_multiplicity(found: Diagram) -> None:
@@ -119,9 +117,9 @@ def test_index_changes_by_the_multiplicity(found: Diagram) -> None:
 def test_onset_of_the_hexagon_is_double(hexagon: DiskMesh) -> None:
     """A saddle may point any way: two modes are lost together, as one event."""
     problem = Problem(hexagon)
-    settings = Settings(load_range=(800.0, 900.0), load_unit=900.0)
-    start = diagram.stable_point(problem, hexagon, 800.0, settings)
-    (onset,) = specials_along(problem, start, settings)
+    control = StepControl(window=(800.0, 900.0), unit=900.0)
+    start = diagram.stable_point(problem, 800.0, control)
+    (onset,) = specials_along(start, control)
     assert onset.multiplicity == 2
     assert onset.n_unstable == 0
     assert onset.symmetry.transverse > 0.999
@@ -139,7 +137,7 @@ def test_eights_mode_bends_its_lobes(found: Diagram) -> None:
     """Out of the plane; the mirrors across the plane's axes and one half turn stay."""
     bent = max(
         (special for special in found.specials if special.n_unstable == 0),
-        key=lambda special: special.point.load,
+        key=lambda special: special.point.value,
     )
     assert bent.symmetry.transverse > 0.999
     assert set(bent.symmetry.keeps) == {
@@ -153,9 +151,9 @@ def test_sides_of_a_pitchfork_are_mirror_images(found: Diagram) -> None:
     for special in found.specials:
         if special.arrived:
             continue
-        one, other = branches_from(special, SETTINGS)
+        one, other = branches_from(special, CONTROL)
         assert loop_distance(one.x, other.x * MIRROR) < 1e-6
-        assert other.load == pytest.approx(one.load, rel=1e-9)
+        assert other.value == pytest.approx(one.value, rel=1e-9)
         assert found.energy(other) == pytest.approx(found.energy(one), rel=1e-9)
         assert found.twist(one) == pytest.approx(-found.twist(other), rel=1e-5)
 
@@ -165,10 +163,10 @@ def test_pitchforks_open_as_the_square_of_the_amplitude(found: Diagram) -> None:
     for special in found.specials:
         if special.arrived:
             continue
-        side = next(iter(branches_from(special, SETTINGS)))
-        fine = Settings(SETTINGS.load_range, SETTINGS.load_unit, 2e-4, 2e-4, max_points=12)
+        side = next(iter(branches_from(special, CONTROL)))
+        fine = StepControl(CONTROL.window, CONTROL.unit, 2e-4, 2e-4, max_points=12)
         points = list(follow(side, fine))
-        excess = [point.load - special.point.load for point in points]
+        excess = [point.value - special.point.value for point in points]
         assert min(excess) > 0
         sizes = [amplitude(found.problem, special, point) for point in points]
         assert fitted_order(sizes, excess) == pytest.approx(2.0, abs=0.02)
@@ -184,31 +182,31 @@ def test_pitchforks_are_supercritical(found: Diagram) -> None:
     for special in found.specials:
         if special.arrived:
             continue
-        above = advance(special.point, 2e-3, SETTINGS)
-        below = advance(special.point, -2e-3, SETTINGS)
+        above = advance(special.point, 2e-3, CONTROL)
+        below = advance(special.point, -2e-3, CONTROL)
         assert above is not None
         assert below is not None
-        assert above.load > special.point.load > below.load
+        assert above.value > special.point.value > below.value
         assert above.stability.n_unstable == special.n_unstable + 1
         assert below.stability.n_unstable == special.n_unstable
-        for side in branches_from(special, SETTINGS):
-            assert side.load > special.point.load
+        for side in branches_from(special, CONTROL):
+            assert side.value > special.point.value
             assert side.stability.n_unstable == special.n_unstable
 
 
 def test_folds_are_told_from_bifurcations() -> None:
     """A fold: the load is extreme, quadratically; no symmetry breaks, no branch leaves."""
-    problem, start, settings = diagram.folding_branch()
-    specials = specials_along(problem, start, settings)
+    _, start, control = diagram.folding_branch()
+    specials = specials_along(start, control)
     (fold,) = (special for special in specials if special.kind == FOLD)
     assert {special.kind for special in specials} == {FOLD, BIFURCATION}
     assert fold.symmetry.breaks == ()
     assert abs(fold.eigenvalue) <= fold.point.stability.error_bound
-    assert fold.load_error < PRECISION * fold.point.load
-    assert list(branches_from(fold, settings)) == []
+    assert fold.error < PRECISION * fold.point.value
+    assert list(branches_from(fold, control)) == []
     steps = [1e-3, 2e-3, 4e-3]
-    ends = both_ways(problem, fold.point, steps, settings)
-    rise = [sum(end.load for end in pair) - 2 * fold.point.load for pair in ends]
+    ends = both_ways(fold.point, steps, control)
+    rise = [sum(end.value for end in pair) - 2 * fold.point.value for pair in ends]
     assert min(rise) > 0
     assert fitted_order(steps, rise) == pytest.approx(2.0, abs=0.05)
     for pair in ends:
@@ -217,21 +215,21 @@ def test_folds_are_told_from_bifurcations() -> None:
 
 
 def both_ways(
-    problem: Problem, point: BranchPoint, steps: Sequence[float], settings: Settings
+    point: BranchPoint, steps: Sequence[float], control: StepControl
 ) -> list[list[BranchPoint]]:
     back = replace(point, direction=point.direction.reversed())
     ends = []
     for step in steps:
-        pair = [advance(way, step, settings) for way in (point, back)]
+        pair = [advance(way, step, control) for way in (point, back)]
         ends.append([end for end in pair if end is not None])
     assert all(len(pair) == 2 for pair in ends)
     return ends
 
 
 def test_mode_of_a_fold_is_the_branch_direction() -> None:
-    problem, start, settings = diagram.folding_branch()
-    fold = next(s for s in specials_along(problem, start, settings) if s.kind == FOLD)
+    problem, start, control = diagram.folding_branch()
+    fold = next(s for s in specials_along(start, control) if s.kind == FOLD)
     mass = problem.loop.mean_lengths[:, None]
-    assert abs(fold.point.direction.load) < 1e-6 * settings.load_unit
+    assert abs(fold.point.direction.rate) < 1e-6 * control.unit
     overlap: FloatArray = mass * fold.mode * fold.point.direction.displacement
     assert abs(overlap.sum()) == pytest.approx(1.0, abs=1e-6)

@@ -1,4 +1,15 @@
-"""branches."""
+"""Branches of equilibria, stable or not, through folds and bifurcations.
+
+    films.py        branches of a film: `explore`, and how one starts from a shape
+    exploration.py  the order in which all branches that hang together are followed
+    continuation.py one branch, point by point (point.py); the step's length
+    between.py      where between two points something vanishes
+    special.py      what a fold or a bifurcation is, and the branches that leave it
+    family.py       what is varied: energies of a loop that differ in one parameter
+    symmetry.py     which symmetries a mode breaks; scaling.py: exponents at an onset
+
+Nothing here but films.py knows films: any `Family` of energies of a loop can be followed.
+"""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
-"""A interval of a branch between two points, and where on it something vanishes."""
+"""An interval of a branch between two points, and where on it something vanishes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ROUNDING = 4 * float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True)
 class Interval:
-    """A interval of branch between two neighbouring points."""
+    """An interval of a branch between two neighbouring points."""
 
     before: BranchPoint
     after: BranchPoint

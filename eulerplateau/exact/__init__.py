@@ -1,9 +1,14 @@
 """True films without a mesh: to rounding in elliptic functions, or to spectral accuracy.
 
-planar/ has the equilibria of a film in its plane, contact of the loop's sides included
-(docs/planar.md); tangent_angle/ finds those without contact from a start; conformal/ films
-in space, their branches and their stability (docs/true-film.md). Lengths are in units of L,
-energies in alpha/L; a tension is sigma_hat = sigma L^3 / alpha.
+    planar/         `planar_film`: equilibria of a film in its plane, contact of the loop's
+                    sides included (docs/planar.md)
+    tangent_angle/  `relax_in_plane`: those without contact, downhill from a start
+    conformal/      `relax`: films in space, downhill from a start; their branches and
+                    their stability (docs/true-film.md)
+    checks.py       what is asked of their arguments
+
+Lengths are in units of L, energies in alpha/L; a tension is sigma_hat = sigma L^3 / alpha.
+Of the other rooms this one knows nothing: it is the referee of everything on a mesh.
 """
 
 import lazy_loader

@@ -220,10 +220,10 @@ def area(disk: Disk) -> AreaFilm:
 
 
 def local_film(tiling: Tiling, x: FloatArray, free: bool = False) -> LocalFilm:
-    """Return the chart at a shape (n_v, 3), which is brought near to rest first.
+    """Return the film near a shape (n_v, 3), which is brought near to rest first.
 
     free : whether vertices inside may move freely, which takes a discrete minimal surface
-    (minimal.py): on another film not all displacements are resisted.
+    (minimal_surface.py): on another film not all displacements are resisted.
 
     Re-weighting: the film that is harmonic with the cotangent weights of the last one has
     no more area (Pinkall and Polthier 1993).

@@ -1,8 +1,8 @@
 """A curved film whose vertices inside are free to move, and its way to least area.
 
 Where the film is curved its area depends, weakly, on where its vertices lie; of the places
-next to a discrete minimal surface (minimal.py) one is best. Newton's method finds it, the
-Hessian shifted where it is not positive definite.
+next to a discrete minimal surface (minimal_surface.py) one is best. Newton's method finds
+it, the Hessian shifted where it is not positive definite.
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ def follow_loop(tiling: Tiling, x: FloatArray, x_loop: FloatArray) -> FloatArray
 
 
 def balance(tiling: Tiling, x: FloatArray) -> FloatArray:
-    """Return the forces (n_v, 3) of unit tension that do work in the chart at x (n_v, 3).
+    """Return the forces (n_v, 3) of unit tension that do work near x (n_v, 3).
 
     Inside the part of the area's gradient along the normal; on the loop f = T^T g. Both
     are independent of the path by which a film came to x.

@@ -7,7 +7,7 @@ Near a reference shape X with vertex normals n, a loop x_b carries the film
 
 G the harmonic extension, so that the mesh follows its loop, and u the displacements that
 make the area stationary: n_i . dA/dx_i = 0. That is one trial space, fixed as long as the
-chart is, so the area left over is a smooth function of the loop with the exact gradient
+reference is, so the area left over is a smooth function of the loop with the exact gradient
 
     f = g_b + G^T g_i.
 
@@ -17,11 +17,11 @@ films) is
     S = T^T H T - (T^T H n) (n^T H n)^-1 (n^T H T),
 
 where T may be (1, G), or any other way in which the mesh follows its loop smoothly: that
-makes a difference of O(h^2), and none on flat films. See variations.py.
+makes a difference of O(h^2), and none on flat films. See normal_moves.py.
 
 What remains of g_i along a curved film is a discretisation error: the area does depend,
-weakly, on where its vertices lie. Near a discrete minimal surface (minimal.py) it is
-removed as well: u are then all displacements inside, g_i = 0, f = g_b, and S is exact.
+weakly, on where its vertices lie. Near a discrete minimal surface (minimal_surface.py) it
+is removed as well: u are then all displacements inside, g_i = 0, f = g_b, and S is exact.
 """
 
 from __future__ import annotations
@@ -44,15 +44,15 @@ _STEPS = 30
 _PARTS = 1.0, 0.5, 0.25
 # Part of the error that a step with an old factorised Hessian may leave.
 _SLOW = 0.1
-# Cosine of the tilt of normals beyond which a chart gives way to a new one, and up to which
-# a film counts as being where its chart was made.
+# Cosine of the tilt of normals beyond which a reference shape gives way to a new one, and
+# up to which a film counts as being where its reference is.
 _TILT = 0.9
 _NO_TILT = 1 - 1e-10
 
 
 @dataclass(frozen=True)
 class FilmAtRest:
-    """A film at rest on its loop, in a chart.
+    """A film at rest on its loop, near a reference shape.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class FilmAtRest:
 
     @property
     def central(self) -> bool:
-        """Whether the film is at rest in the chart made at its own shape."""
+        """Whether the film rests where the reference lies that it is known near."""
         return self.local.is_central(self.sides)
 
     def displacement(self, moved: FloatArray) -> FloatArray:
@@ -161,7 +161,7 @@ class LocalFilm(ABC):
         return self._follower.carry(gradient)
 
     def tilt(self, sides: TriangleGeometry) -> float:
-        """Return the smallest cosine between a film's normals and the chart's."""
+        """Return the smallest cosine between a film's normals and the reference's."""
         now = self.tiling.vertex_normals(sides)[self.tiling.interior]
         return float((now * self.normals).sum(axis=1).min(initial=1.0))
 
@@ -174,7 +174,7 @@ class LocalFilm(ABC):
     def relax(self, x_loop: FloatArray) -> FilmAtRest:
         """Return the film of least area on a loop (n_b, 3).
 
-        Raises LinAlgError if there is none in this chart: the film has torn or folded.
+        Raises LinAlgError if there is none near the reference: it has torn or folded.
         """
         loop = self.tiling.loop
         for known in self._recent:
@@ -213,7 +213,7 @@ class LocalFilm(ABC):
         return state
 
     def unfolded(self, sides: TriangleGeometry) -> bool:
-        """Return whether every triangle of a film has the side up that the chart's has."""
+        """Return whether every triangle of a film has the same side up as in the reference."""
         turned = (sides.normals * self.sides.normals).sum(axis=1)
         return bool((sides.areas > 0).all() and (turned > LIMITS.folded).all())
 

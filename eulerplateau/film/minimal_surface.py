@@ -1,7 +1,7 @@
 """Discrete minimal surfaces: films whose area no displacement of a vertex inside changes.
 
-Along its normals a film comes to rest in a chart (chart.py). What then remains of the
-area's gradient lies in the film: the area of triangles depends, weakly, on where their
+A film whose vertices have come to rest along their normals (interior.py) has a gradient of
+the area left that lies in the film: the area of triangles depends, weakly, on where their
 vertices lie. On a curved film it is least for certain places, denser where it is more
 curved, and certain triangles. They are found here: by Newton's method on all coordinates
 inside, the Hessian shifted until it is positive definite, and by flips to Delaunay's

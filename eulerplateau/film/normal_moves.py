@@ -1,7 +1,7 @@
 """The displacements by which a film is varied, and what its second variation is by them.
 
 Of its interior they are the heights along normals (`NormalHeights`), or all there are
-(free.py); of its loop all. What is inside is eliminated.
+(free_moves.py); of its loop all. What is inside is eliminated.
 """
 
 from __future__ import annotations

@@ -1,4 +1,15 @@
-"""loop."""
+"""The elastic loop that bounds a film: its energy, its lengths, its free motions.
+
+    loop.py      the loop itself: rest lengths, curvature's weights, how sharply it turns
+    energy.py    an energy as a sum of terms, with its constraint and its free motions:
+                 write another `Term` in a file of its own to add to the physics of the loop
+    bending.py   the bending term, and the energy of a loop that keeps its lengths
+    lengths.py   how the lengths of its edges are kept, or not; how a loop is closed again
+    motions.py   what costs no energy: rigid motions, sliding along itself
+
+Of the other rooms this one knows nothing. Loops are arrays (n, 3), or (n, 2) in a plane;
+*kernels.py are compiled by numba.
+"""
 
 import lazy_loader
 

@@ -171,7 +171,7 @@ class Lengths:
     loop: Loop
 
     def jacobian(self, x: FloatArray) -> FloatArray:
-        """Return J (n, d n): see lengths.jacobian."""
+        """Return J (n, d n): see the function of that name."""
         return jacobian(self.loop, x)
 
     def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:

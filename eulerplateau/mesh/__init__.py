@@ -1,4 +1,15 @@
-"""mesh."""
+"""Triangulated disks: read or made, checked, moved, and measured.
+
+    disk.py      the mesh at rest, checked; shape.py: a surface of its vertices anywhere
+    making.py    `mesh_polygon`; spec.py: what a file of meshes/ may say; polygon.py: the
+                 kinds of polygons, to which another is added; generation.py: Gmsh
+    files.py     mesh files, formats.py: their formats, to which another is added; vtp.py
+    measures.py  the numbers of a shape that become columns of sweep.csv, on curvature.py,
+                 waist.py (twist) and crossings.py (self-intersections)
+    triangles.py areas, angles, neighbours; whole_files.py: a whole file or none
+
+A disk's lengths are in units of L, the length of its loop.
+"""
 
 import lazy_loader
 

@@ -1,4 +1,17 @@
-"""Pictures: what a run looks like, as diagrams, prints, renders, and a page to browse."""
+"""Pictures: what a run looks like, as diagrams, prints, renders, and a page to browse.
+
+    sweep_diagram.py, branch_diagram.py   diagram.png and branches.png, on panels.py:
+                     quantities over the load, of any number of runs, legs or branches
+    comparison.py    figures for print, of one run or of several; onset.py: scaling laws;
+                     vector_film.py: films drawn as vectors
+    planar.py        figures of the exact planar films
+    figure.py        labels, colours, saving: what all figures have in common
+    view.py, alignment.py   from where films are seen, and turned to lie alike
+    render/          stills and animations by VTK, in a child process (child.py)
+    gallery/         a run as one page to browse
+
+A picture that fails is a warning and costs no run.
+"""
 
 import lazy_loader
 

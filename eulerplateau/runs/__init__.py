@@ -1,4 +1,16 @@
-"""Runs: what a specification says, and the sweep that carries it out."""
+"""Runs: from a specification to a folder of rows and shapes, and back.
+
+    running.py      `run`, as from the command line; plan.py: which runs a call asks for
+    spec.py         what a file of runs/ may say, to which a key is added
+    start.py        where a run starts: at its mesh or at a stored shape
+    sweep.py, exploration.py   a sweep, the branches; recording.py: what both write
+    table.py        the columns of sweep.csv and branches.csv; folder.py: the folder
+    shape_files.py  shapes/*.vtp and their fields, written and read
+    record.py       `read_run`: a folder read back; series.py: the curves of its diagram;
+                    states.py: its distinct states
+
+What has been computed is on disk row by row, and valid after every step.
+"""
 
 import lazy_loader
 

@@ -1,4 +1,18 @@
-"""solvers."""
+"""Equilibria: the problem, film and loop on a disk, and the minima of its energy.
+
+    solving.py    `solve` and `sweep`, and the solvers by name, to which one adds
+    problem.py    what is solved; start.py: where from; equilibrium.py: what comes out,
+                  when it counts as converged, and what each status advises
+    newton.py     by Newton on the loop; chooses among quadratic.py, soap.py, in_plane/
+    descent.py    downhill to a minimum, on trust_region.py; primal_dual.py: the fast end
+    second_variation.py  Hessian and spectrum at one loop; modes.py: the softest modes;
+                  models.py, quadratic_models.py: of which part, large_loops/ for large ones
+    conjugate_gradient.py  the paper's method, in the unknowns of trial_space.py
+    threads.py    one BLAS thread while something is solved
+
+A solver sees an energy of loops with its constraint, no mesh and no file. Which film it
+is is asked in newton.py and in trial_space.py, nowhere else.
+"""
 
 import lazy_loader
 

@@ -1,7 +1,7 @@
 """What conjugate gradients vary, and what it does to a film's energy.
 
 A film of fixed weights moves with all its vertices and is quadratic in them. A soap film's
-vertices move along their normals, on top of how the mesh follows its loop (chart.py):
+vertices move along their normals, on top of how the mesh follows its loop (interior.py):
 sliding costs nothing, and a descent along it would end in thin triangles. A film kept in
 its plane has no unknowns but its loop's. Of both the loop is kept from sliding along
 itself, which costs nothing either (motions.py).

@@ -1,4 +1,17 @@
-"""True soap films bounded by an elastic loop, to spectral accuracy (docs/true-film.md)."""
+"""True soap films bounded by an elastic loop, to spectral accuracy (docs/true-film.md).
+
+    relaxation.py   `relax`: downhill from a start to a film, on kernels.py
+    basis.py        loops as trigonometric polynomials, and their symmetry; grading.py:
+                    grids for narrow waists; sector.py: the part that symmetry repeats
+    energy.py       bending, length, area and their derivatives
+    equilibrium.py  Newton's method to an equilibrium, stable or not
+    branch.py       branches: followed, located, switched; second_variation.py: stability
+    geometry.py     the film as a surface, its edge and its waist
+    eight.py        the flat eight, eight_modes.py: its stability; held_waist.py: films
+                    whose waist is held
+
+A film is its loop, whose harmonic extension is minimal where it is conformal.
+"""
 
 import lazy_loader
 

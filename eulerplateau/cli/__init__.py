@@ -11,6 +11,7 @@ import click
 
 from eulerplateau import __version__
 from eulerplateau.cli.branches import branches
+from eulerplateau.cli.examples import examples
 from eulerplateau.cli.gallery import gallery
 from eulerplateau.cli.mesh import mesh
 from eulerplateau.cli.planar import planar
@@ -34,6 +35,7 @@ def commands() -> None:
 
 
 commands.add_command(branches)
+commands.add_command(examples)
 commands.add_command(gallery)
 commands.add_command(mesh)
 commands.add_command(planar)

@@ -1,3 +1,4 @@
+from .examples import write_examples as write_examples
 from .exploration import Exploration as Exploration, run_branches as run_branches
 from .folder import shape_name as shape_name
 from .plan import load_with as load_with, planned as planned

@@ -78,9 +78,9 @@ class Loop:
         curvature = backward_differences(tangent) / self.mean_lengths[:, None]
         return backward_differences(differences(curvature) * (2 / s))
 
-    def tension_force(self, x_loop: FloatArray, multipliers: FloatArray) -> FloatArray:
+    def tension_force(self, x_loop: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return J^T lambda (n_b, 3), the gradient of sum_v lambda_v c_v."""
-        pull = (multipliers / self.rest_lengths)[:, None] * self.chords(x_loop)
+        pull = (tensions / self.rest_lengths)[:, None] * self.chords(x_loop)
         return -backward_differences(pull)
 
     def tension_stiffness(self, tensions: FloatArray) -> FloatArray:

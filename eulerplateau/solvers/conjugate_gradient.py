@@ -35,8 +35,8 @@ from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.start import smooth_kick
 from eulerplateau.solvers.trial_space import kick_axis, trial_space
 
-# A tenfold tighter residual for every update of the multipliers; the floor leaves the
-# multipliers' last update room below the accepted tolerance.
+# A tenfold tighter residual for every update of the tensions; the floor leaves the
+# tensions' last update room below the accepted tolerance.
 _FIRST_TOLERANCE = 1e-2
 _TIGHTENING = 0.1
 _FINAL_TOLERANCE = 0.3 * RESIDUAL_TOLERANCE

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import area
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers import SOLVERS, Problem, solving
+from eulerplateau.solvers import SOLVERS, Problem, conjugate_gradient, solving
 from eulerplateau.solvers.equilibrium import (
     LENGTH_TOLERANCE,
     RESIDUAL_TOLERANCE,
@@ -132,6 +133,21 @@ def test_kick_makes_it_leave_a_saddle(oval_problem: Problem) -> None:
     assert np.ptp(found.shape.x[:, 2]) > 0.01
     lowest = solving.solve(oval_problem, load, found)
     assert found.energy == pytest.approx(lowest.energy, rel=1e-8)
+
+
+@pytest.mark.parametrize("confirmed", [False, True])
+def test_kicks_that_are_not_confirmed_give_a_saddle(
+    oval_problem: Problem, monkeypatch: pytest.MonkeyPatch, confirmed: bool
+) -> None:
+    """Each of five kicks leads lower, or only the first four do."""
+    energies = [40.0, 39.0, 38.0, 37.0, 36.0, 36.0 if confirmed else 35.0]
+    minimum = solving.solve(oval_problem, 300.0)
+    left = iter([replace(minimum, energy=e, iterations=10) for e in energies])
+    monkeypatch.setattr(conjugate_gradient, "_descend", lambda *arguments: next(left))
+    found = solving.solve(oval_problem, 300.0, solver="cg")
+    assert found.status is (Status.CONVERGED if confirmed else Status.SADDLE)
+    assert (found.energy, found.iterations) == (energies[-1], 60)
+    assert next(left, None) is None
 
 
 def test_restart_from_newtons_minimum_stays_there(

@@ -11,9 +11,12 @@ from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.solvers import (
     Problem,
     Stability,
+    Status,
     TangentModel,
+    solve,
     stability,
     tangent_model,
+    with_stability,
 )
 from tests.helpers import equilibria, shapes
 from tests.helpers.equilibria import loop_energy
@@ -189,6 +192,21 @@ def test_hexagonal_lattice_leaves_the_plane_within_a_percent_of_the_disks_thresh
 def test_neutral_and_unstable_are_told_apart_by_the_error_bound() -> None:
     found = Stability(np.array([-2.0, -1e-9, 1e-9, 3.0]), 1e-8)
     assert (found.n_unstable, found.n_neutral, found.lowest) == (1, 2, -2.0)
+
+
+def test_rounding_is_blinding_from_a_tenth_of_the_bare_circles_lowest_eigenvalue() -> None:
+    """And only where it hides an eigenvalue; what converged blindly has stalled."""
+    values = np.array([0.0, 10 * within(2)])
+    below, above = (Stability(values, part * within(2)) for part in (0.0999, 0.1001))
+    assert (below.n_neutral, above.n_neutral) == (1, 1)
+    assert not below.blind
+    assert above.blind
+    assert not Stability(values[1:], above.error_bound).blind
+    problem = Problem(shapes.mesh_of(*shapes.disk_points(3)))
+    found = solve(problem, 1.0)
+    assert found.status is Status.CONVERGED
+    assert with_stability(found, below).status is Status.CONVERGED
+    assert with_stability(found, above).status is Status.STALLED
 
 
 def test_loop_without_freedom_is_stable() -> None:

@@ -22,6 +22,7 @@ ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.glob("*.md"))
 TUTORIAL = DOCS / "tutorial.md"
+EXAMPLES = [ROOT / "README.md", *PAGES]
 
 # As the committed runs, which take longer: one flat state and one out of the plane.
 SHORT_RUN = '[mesh]\nfile = "../meshes/{}.vtp"\n[sweep]\nloads = [600, 700]\n'
@@ -30,6 +31,20 @@ SHORT_RUN = '[mesh]\nfile = "../meshes/{}.vtp"\n[sweep]\nloads = [600, 700]\n'
 def blocks(page: Path, language: str) -> list[str]:
     """Return the fenced blocks of a page in one language, in order."""
     return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.M | re.S)
+
+
+def examples(page: Path) -> list[tuple[str, str | None]]:
+    """Return the Python blocks of a page, each with the block of text right below it."""
+    pattern = r"^```python\n(.*?)^```$(?:\n\n```text\n(.*?)^```$)?"
+    found = re.findall(pattern, page.read_text(), re.M | re.S)
+    return [(code, said or None) for code, said in found]
+
+
+def words_and_numbers(text: str) -> tuple[list[str], list[float]]:
+    """Return a text's words, and its numbers; without residuals, which are rounding."""
+    number = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+    text = re.sub(r"residual \S+", "residual", text)
+    return re.sub(number, "#", text).split(), [float(n) for n in re.findall(number, text)]
 
 
 def command_lines(page: Path, program: str) -> list[list[str]]:
@@ -66,14 +81,20 @@ def run(*arguments: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", [page for page in PAGES if blocks(page, "python")], ids=lambda page: page.stem
+    "page", [page for page in EXAMPLES if blocks(page, "python")], ids=lambda page: page.stem
 )
-def test_python_examples_run_in_order(page: Path, clone: Path) -> None:
+def test_python_examples_run_in_order_and_print_what_they_say(
+    page: Path, clone: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     if page.stem == "gallery":
         run("sweep", "runs/elongated.toml", "--no-pictures", "--quiet")
     names: dict[str, object] = {"__name__": "__main__"}
-    for block in blocks(page, "python"):
-        exec(compile(block, str(page), "exec"), names)
+    for code, said in examples(page):
+        exec(compile(code, str(page), "exec"), names)
+        printed = capsys.readouterr().out
+        if said is not None:
+            words, numbers = words_and_numbers(said)
+            assert words_and_numbers(printed) == (words, pytest.approx(numbers, 1e-4, 1e-4))
 
 
 def test_specifications_of_the_tutorial_are_valid(clone: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.continuation import advance, follow
-from eulerplateau.branches.point import BranchPoint, StepControl
+from eulerplateau.branches.point import BranchPoint, StepControl, along
 from eulerplateau.branches.special import (
     BIFURCATION,
     FOLD,
@@ -101,6 +101,30 @@ def test_both_ends_of_a_branch_find_the_same_points(found: Diagram) -> None:
     for other in others:
         error = first.error + other.error
         assert abs(other.point.value - first.point.value) <= error
+
+
+def test_branch_arrives_at_the_interpolated_zero_of_the_loads_rate(found: Diagram) -> None:
+    """Its arclength there errs by the square of the step or less, wherever the step began.
+
+    The point itself is known from the branch that it crosses, to an eigenvalue's rounding.
+    """
+    end = next(v for v in found.visits if v.special is not None and v.special.arrived)
+    assert end.special is not None
+    last = diagram.regular(found.branch(end.branch))[-1]
+    left = along(last, end.special.point, CONTROL)
+    for part in (0.3, 0.6):
+        steps, errors = [0.006, 0.012], []
+        for step in steps:
+            before = advance(last, left - part * step, CONTROL)
+            assert before is not None
+            after = advance(before, step, CONTROL)
+            assert after is not None
+            (special,) = special_points(before, after, CONTROL)
+            assert special.arrived
+            gone = special.point.arclength - before.arclength
+            errors.append(gone - along(before, special.point, CONTROL))
+        assert max(np.abs(errors)) < 1e-2 * steps[-1]
+        assert fitted_order(steps, errors) > 1.9
 
 
 def test_index_changes_by_the_multiplicity(found: Diagram) -> None:

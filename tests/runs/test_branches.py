@@ -93,7 +93,7 @@ def test_critical_mode_is_in_the_shape_of_its_special_point(
 
 @pytest.fixture(scope="module")
 def soap(tmp_path_factory: pytest.TempPathFactory) -> Exploration:
-    """A soap film's two lobes, whose thin triangles are replaced, and its twist."""
+    """A soap film's two lobes, thin triangles replaced on the way, and their twist."""
     folder = tmp_path_factory.mktemp("soap")
     points, triangles = disk_points(6)
     write_mesh(mesh_of(points * [1.3, 1.0], triangles), folder / "oval.vtp")

@@ -213,7 +213,7 @@ class LocalFilm(ABC):
         return state
 
     def unfolded(self, sides: TriangleGeometry) -> bool:
-        """Return whether every triangle of a film shows the side that the reference shows."""
+        """Return whether every triangle shows the side that the reference shows."""
         turned = (sides.normals * self.sides.normals).sum(axis=1)
         return bool((sides.areas > 0).all() and (turned > LIMITS.folded).all())
 

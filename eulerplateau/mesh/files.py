@@ -12,20 +12,7 @@ from eulerplateau.mesh import formats
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.generation import generate
 from eulerplateau.mesh.spec import MeshSpec
-from eulerplateau.mesh.whole_files import whole_file
 from eulerplateau.settings import load_toml
-
-_FORMATS = {
-    ".vtp": (formats.read_polygons, formats.write_polygons),
-    ".msh": (formats.read_meshio, formats.write_meshio),
-    ".vtu": (formats.read_meshio, formats.write_meshio),
-    ".vtk": (formats.read_meshio, formats.write_meshio),
-    ".off": (formats.read_meshio, formats.write_meshio),
-    ".ply": (formats.read_meshio, formats.write_meshio),
-    ".stl": (formats.read_trimesh, formats.write_trimesh),
-    ".glb": (formats.read_trimesh, formats.write_trimesh),
-    ".obj": (formats.read_obj, formats.write_obj),
-}
 
 
 def read_disk(path: str | Path) -> Disk:
@@ -76,7 +63,7 @@ def read_triangles(path: str | Path) -> tuple[FloatArray, IntArray]:
         raise OutputError(path, f"cannot be read: {error.strerror}") from None
     if empty:
         raise MeshError("mesh", None, f"{path} is empty")
-    read, _ = _format(path)
+    read, _ = formats.format_of(path)
     try:
         points, triangles = read(path)
         return points.astype(np.float64), triangles.astype(np.int64).reshape(-1, 3)
@@ -94,22 +81,7 @@ def write_mesh(mesh: Disk, path: str | Path) -> None:
     .vtp .msh .vtu .vtk .off .ply .obj keep every bit, .stl and .glb single precision.
     Raises MeshError for another extension, OutputError if the file cannot be written.
     """
-    path = Path(path)
-    _, write = _format(path)
-    with whole_file(path) as temporary:
-        write(temporary, mesh.x * mesh.length, mesh.triangles)
-        # A library may leave an empty file on a full disk, without an error.
-        if not temporary.is_file() or temporary.stat().st_size == 0:
-            raise OutputError(path, "cannot be written: is the disk full?")
-
-
-def _format(path: Path) -> tuple[formats.Reader, formats.Writer]:
-    try:
-        return _FORMATS[path.suffix.lower()]
-    except KeyError:
-        known = " ".join(_FORMATS)
-        problem = f"{path} has an unknown extension; known are {known} (and .toml specs)"
-        raise MeshError("mesh", None, problem) from None
+    formats.write_triangles(Path(path), mesh.x * mesh.length, mesh.triangles)
 
 
 def _named_as_in_file(error: MeshError, used: IntArray, path: str | Path) -> MeshError:

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.errors import MeshError
+from eulerplateau.errors import MeshError, OutputError
 from eulerplateau.mesh.vtp import read_vtp, vtp_content
+from eulerplateau.mesh.whole_files import whole_file
 
 _log = logging.getLogger(__name__)
 
@@ -126,3 +127,39 @@ def _merge_equal(
 
 def _not_triangles(path: Path, found: str) -> MeshError:
     return MeshError("mesh", None, f"{path} holds {found}; a film is made of triangles")
+
+
+_FORMATS: dict[str, tuple[Reader, Writer]] = {
+    ".vtp": (read_polygons, write_polygons),
+    ".msh": (read_meshio, write_meshio),
+    ".vtu": (read_meshio, write_meshio),
+    ".vtk": (read_meshio, write_meshio),
+    ".off": (read_meshio, write_meshio),
+    ".ply": (read_meshio, write_meshio),
+    ".stl": (read_trimesh, write_trimesh),
+    ".glb": (read_trimesh, write_trimesh),
+    ".obj": (read_obj, write_obj),
+}
+
+
+def format_of(path: Path) -> tuple[Reader, Writer]:
+    """Return what reads and writes a file; raises MeshError for an unknown extension."""
+    try:
+        return _FORMATS[path.suffix.lower()]
+    except KeyError:
+        known = " ".join(_FORMATS)
+        problem = f"{path} has an unknown extension; known are {known} (and .toml specs)"
+        raise MeshError("mesh", None, problem) from None
+
+
+def write_triangles(path: Path, points: FloatArray, triangles: IntArray) -> None:
+    """Write points (n, 3) and triangles (n_t, 3) in the format of the extension, whole.
+
+    Raises MeshError for an unknown one, OutputError if the file cannot be written.
+    """
+    _, write = format_of(path)
+    with whole_file(path) as temporary:
+        write(temporary, points, triangles)
+        # A library may leave an empty file on a full disk, without an error.
+        if not temporary.is_file() or temporary.stat().st_size == 0:
+            raise OutputError(path, "cannot be written: is the disk full?")

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.errors import EulerPlateauError
+
+if TYPE_CHECKING:
+    from eulerplateau.mesh.drawing.picture import Picture
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -37,3 +46,45 @@ class Shape:
     def moved(self, x: FloatArray) -> Shape:
         """Return the surface with its vertices at x (n_v, 3)."""
         return replace(self, x=x)
+
+    def write(self, path: str | Path) -> None:
+        """Write the surface, lengths in units of L, to a file; whole or not at all.
+
+        The extension says how: .vtp, exactly and with the loop as a closed line, or what
+        `write_mesh` knows. Raises MeshError for another extension, OutputError if the file
+        cannot be written.
+        """
+        from eulerplateau.mesh.formats import write_triangles
+        from eulerplateau.mesh.vtp import write_vtp
+
+        if Path(path).suffix.lower() == ".vtp":
+            write_vtp(Path(path), self.x, self.triangles, loop=self.loop)
+        else:
+            write_triangles(Path(path), self.x, self.triangles)
+
+    def plot(self, **options: Any) -> Picture:
+        """Show the film, blue where its normal points to, and its loop; return a picture.
+
+        Where there is a display it opens in a window, to be turned and closed; a notebook
+        shows the picture that is returned, and `write` saves it. The window and the picture
+        are made by pyvista in a child process. `options` are those of its `add_mesh` for
+        the film, such as opacity=0.5, show_edges=True or scalars=(n_v,) values.
+
+        Raises MissingLibraryError, which says what to install, where drawing does not work,
+        and SpecError if pyvista cannot draw this film with these options.
+        """
+        from eulerplateau.mesh.drawing.picture import draw_film, windows_open
+
+        surface = self.x, self.triangles, self.loop
+        return draw_film(*surface, window=windows_open(), options=options)
+
+    def _repr_png_(self) -> bytes | None:
+        """Return what a notebook shows: a picture, or None where none can be drawn."""
+        from eulerplateau.mesh.drawing.picture import draw_film
+
+        surface = self.x, self.triangles, self.loop
+        try:
+            return draw_film(*surface, window=False, options={}).png
+        except EulerPlateauError as error:
+            _log.warning("%s", error)
+            return None

@@ -12,7 +12,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
-from eulerplateau.pictures.alignment import aligned
+from eulerplateau.mesh.drawing import aligned, common_view
 from eulerplateau.pictures.figure import (
     ABS_KAPPA_N,
     MINUS_K,
@@ -33,7 +33,6 @@ from eulerplateau.pictures.panels import (
     style,
 )
 from eulerplateau.pictures.vector_film import draw_film, room
-from eulerplateau.pictures.view import common_view
 from eulerplateau.runs import Row, Run, is_planar, read_shape
 
 if TYPE_CHECKING:

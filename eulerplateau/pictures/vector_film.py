@@ -13,7 +13,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
-from eulerplateau.pictures.view import UP
+from eulerplateau.mesh.drawing import UP
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

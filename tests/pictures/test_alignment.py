@@ -7,7 +7,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.pictures.alignment import settled
+from eulerplateau.mesh.drawing import settled
 from tests.helpers.shapes import disk_points, fitted_order, mesh_of, rotation
 from tests.pictures.test_gallery import twisted
 

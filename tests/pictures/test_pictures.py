@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.drawing import aligned, draw_in_child
 from eulerplateau.mesh.shape import Shape
-from eulerplateau.pictures.alignment import aligned
-from eulerplateau.pictures.child import draw_in_child
 from eulerplateau.pictures.figure import drawn
 from eulerplateau.pictures.render import draw_shapes
 from eulerplateau.pictures.sweep_diagram import draw_diagram, plot_diagram

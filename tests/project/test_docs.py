@@ -81,7 +81,9 @@ def run(*arguments: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "page", [page for page in EXAMPLES if blocks(page, "python")], ids=lambda page: page.stem
+    "page",
+    [page for page in EXAMPLES if blocks(page, "python")],
+    ids=lambda page: page.stem,
 )
 def test_python_examples_run_in_order_and_print_what_they_say(
     page: Path, clone: Path, capsys: pytest.CaptureFixture[str]

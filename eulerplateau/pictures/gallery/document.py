@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eulerplateau.pictures.alignment import EYE
+from eulerplateau.mesh.drawing import EYE
 from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
 from eulerplateau.runs import COLUMNS, Series
 

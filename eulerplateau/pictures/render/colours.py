@@ -14,12 +14,10 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.mesh import Shape
+from eulerplateau.mesh.drawing import BACK, FRONT, LOOP
 from eulerplateau.pictures.figure import load_matplotlib
 
 SIDES, SOAP = "sides", "soap"
-LOOP = np.array([0.17, 0.17, 0.17])
-# Okabe and Ito's sky blue and orange, softened: front and back of the film.
-_FRONT, _BACK = np.array([0.44, 0.71, 0.89]), np.array([0.95, 0.65, 0.38])
 _GREY_FRONT, _GREY_BACK = np.full(3, 0.93), np.full(3, 0.72)
 # The back of a film coloured by a field is this much darker.
 _DARKER = 0.65
@@ -148,7 +146,7 @@ def _base(
     front: np.ndarray[tuple[int], np.dtype[np.bool_]],
 ) -> FloatArray:
     """Return the colours (n_t, 3, 3) of the triangles' corners before they are lit."""
-    pair: Mapping[bool, FloatArray] = {True: _FRONT, False: _BACK}
+    pair: Mapping[bool, FloatArray] = {True: np.array(FRONT), False: np.array(BACK)}
     if values is not None and scale is not None:
         if not _on_loop_only(shape, values):
             rgb = scale.rgb(_continued(shape, values))[shape.triangles]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from eulerplateau.pictures.child import draw_in_child
+from eulerplateau.mesh.drawing import draw_in_child
 from eulerplateau.pictures.render.colours import SIDES
 
 STILLS, TURN, SWEEP = "stills", "turn", "sweep"

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eulerplateau.mesh.drawing import ASPECT
 from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.pictures.render.colours import Scale
 from eulerplateau.pictures.render.scene import Pixels
-from eulerplateau.pictures.view import ASPECT
 from eulerplateau.runs import BranchRow, Row
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from pathlib import Path
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import Shape, write_whole
-from eulerplateau.pictures.alignment import aligned, settled_runs
+from eulerplateau.mesh.drawing import View, aligned, common_view, turning_views
+from eulerplateau.pictures.alignment import settled_runs
 from eulerplateau.pictures.render.choice import chosen_steps
 from eulerplateau.pictures.render.colours import (
     SIDES,
@@ -22,7 +23,6 @@ from eulerplateau.pictures.render.colours import (
 from eulerplateau.pictures.render.fields import read_field
 from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
-from eulerplateau.pictures.view import View, common_view, turning_views
 from eulerplateau.runs import Run, read_run
 
 _WIDTH, _FRAME_WIDTH = 1200, 640

@@ -10,12 +10,18 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
+from eulerplateau.mesh.drawing import (
+    ASPECT,
+    GLOSS,
+    View,
+    load_pyvista,
+    loop_tube,
+    point_camera,
+)
 from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.pictures.render.colours import PaintedFilm
-from eulerplateau.pictures.view import ASPECT, LOOP_RADIUS, UP, View
 
 Pixels = NDArray[np.uint8]
-_GLOSS = {"ambient": 0.35, "diffuse": 0.65, "specular": 0.3}
 
 
 class Scene:
@@ -27,17 +33,12 @@ class Scene:
     def __init__(self, width: int) -> None:
         # First, since pyvista imports it whatever MPLBACKEND says.
         load_matplotlib()
-        import pyvista
-        from vtkmodules.vtkCommonCore import vtkLogger
-
-        # VTK writes that there is no X server before it finds that it needs none.
-        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+        pyvista = load_pyvista()
         size = [width, round(ASPECT * width)]
         plotter: Any = pyvista.Plotter(off_screen=True, window_size=size, lighting="none")
         plotter.set_background("white")
         plotter.enable_anti_aliasing("ssaa")
         plotter.add_light(pyvista.Light(light_type="headlight", intensity=1.0))
-        plotter.camera.parallel_projection = True
         self._plotter = plotter
 
     def __enter__(self) -> Scene:
@@ -60,13 +61,9 @@ class Scene:
         plotter.suppress_rendering = True
         plotter.clear_actors()
         plotter.add_mesh(_surface(film), scalars="rgba", rgb=True, lighting=False)
-        tube = _tube(shape, loop_rgb)
-        plotter.add_mesh(tube, scalars="rgb", rgb=True, smooth_shading=True, **_GLOSS)
-        plotter.camera.focal_point = tuple(view.focus)
-        plotter.camera.position = tuple(view.focus + 5 * view.eye)
-        plotter.camera.up = tuple(UP)
-        plotter.camera.parallel_scale = view.half_height
-        plotter.reset_camera_clipping_range()
+        tube = loop_tube(shape.x_loop, {"rgb": _bytes(loop_rgb)})
+        plotter.add_mesh(tube, scalars="rgb", rgb=True, smooth_shading=True, **GLOSS)
+        point_camera(plotter, view)
         plotter.suppress_rendering = False
         plotter.render()
         # VTK's own files end up empty on a full disk, in silence: take the pixels instead.
@@ -82,18 +79,6 @@ def _surface(film: PaintedFilm) -> Any:
     opaque = bool((film.rgba[:, 3] == 1.0).all())
     surface["rgba"] = _bytes(film.rgba[:, :3] if opaque else film.rgba)
     return surface
-
-
-def _tube(shape: Shape, rgb: FloatArray) -> Any:
-    import pyvista
-
-    # The wire passes its first edge twice: where the ends of VTK's tube meet end to end,
-    # they are twisted against each other and pinch it.
-    around = np.resize(np.arange(len(shape.loop)), len(shape.loop) + 2)
-    points = shape.x[shape.loop[around]]
-    wire = pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
-    wire["rgb"] = _bytes(rgb[around])
-    return wire.tube(radius=LOOP_RADIUS, n_sides=24)
 
 
 def _bytes(colours: FloatArray) -> Pixels:

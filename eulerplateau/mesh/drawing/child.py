@@ -1,4 +1,4 @@
-"""Render in a child process: a crash in a graphics driver costs a picture, not the run."""
+"""Draw in a child process: a crash in a graphics driver costs a picture, not the run."""
 
 from __future__ import annotations
 
@@ -16,6 +16,17 @@ def draw_in_child(module: str, *arguments: str, timeout: float) -> bool:
     A child that fails, crashes or takes longer than `timeout` seconds is logged as a
     warning with its last line, and never raises here.
     """
+    failure = failure_of_child(module, *arguments, timeout=timeout)
+    if failure:
+        _log.warning("%s failed: %s", module, failure)
+    return not failure
+
+
+def failure_of_child(module: str, *arguments: str, timeout: float | None) -> str:
+    """Run `python -m module arguments...`; return what failed, in a line, or "".
+
+    Waits `timeout` seconds at most; for ever if it is None.
+    """
     command = [sys.executable, "-m", module, *arguments]
     try:
         done = subprocess.run(
@@ -27,14 +38,10 @@ def draw_in_child(module: str, *arguments: str, timeout: float) -> bool:
             check=False,
         )
     except subprocess.TimeoutExpired:
-        _log.warning("%s failed: no picture after %g s", module, timeout)
-        return False
+        return f"no picture after {timeout:g} s"
     except OSError as error:
-        _log.warning("%s failed: cannot be started: %s", module, error.strerror)
-        return False
-    if done.returncode:
-        _log.warning("%s failed: %s", module, _reason(done.returncode, done.stderr))
-    return done.returncode == 0
+        return f"cannot be started: {error.strerror}"
+    return _reason(done.returncode, done.stderr) if done.returncode else ""
 
 
 def _reason(code: int, stderr: bytes) -> str:

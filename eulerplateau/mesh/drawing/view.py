@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh import Shape
+from eulerplateau.mesh.shape import Shape
 
 UP = np.array([0.0, 0.0, 1.0])
 # Height over width of every picture.
@@ -42,18 +42,19 @@ class View:
     half_height: float
 
 
-def common_view(shapes: Sequence[Shape]) -> View:
+def common_view(shapes: Sequence[Shape], raised: float = _RAISED) -> View:
     """Return a view that holds all shapes and sees about the most of the worst seen.
 
     Of films that turn over little by little, in an animation, no view sees all: each eye
-    has a lobe of one of them edge-on.
+    has a lobe of one of them edge-on. The shapes are `raised` by this part of half the
+    height, above what is written below.
     """
     eyes = _candidate_eyes()
     seen = np.array([_visible_part(shape, eyes) for shape in shapes])
     # Against the best there is for each shape: a closed one is seen in part from anywhere.
     worst = (seen / seen.max(axis=1, keepdims=True)).min(axis=0)
     good = eyes[worst >= _ALMOST * worst.max()]
-    return _raised(_holding(shapes, good[np.argmax(good @ _EYE)]))
+    return _raised(_holding(shapes, good[np.argmax(good @ _EYE)]), raised)
 
 
 def turning_views(shapes: Sequence[Shape], count: int) -> list[View]:
@@ -87,8 +88,8 @@ def _holding(shapes: Sequence[Shape], eye: FloatArray) -> View:
     return View(eye, axes @ (0.5 * (low + high)), _MARGIN * half)
 
 
-def _raised(view: View) -> View:
-    down = -_RAISED * view.half_height * _screen(view.eye)[:, 1]
+def _raised(view: View, part: float = _RAISED) -> View:
+    down = -part * view.half_height * _screen(view.eye)[:, 1]
     return replace(view, focus=view.focus + down)
 
 

@@ -1,0 +1,19 @@
+from .alignment import EYE as EYE, aligned as aligned, settled as settled
+from .child import draw_in_child as draw_in_child
+from .film import (
+    BACK as BACK,
+    FRONT as FRONT,
+    GLOSS as GLOSS,
+    LOOP as LOOP,
+    load_pyvista as load_pyvista,
+    loop_tube as loop_tube,
+    point_camera as point_camera,
+)
+from .picture import Picture as Picture
+from .view import (
+    ASPECT as ASPECT,
+    UP as UP,
+    View as View,
+    common_view as common_view,
+    turning_views as turning_views,
+)

@@ -1,0 +1,81 @@
+"""What pyvista draws of a shape: the film, blue in front and orange behind, and its loop.
+
+Runs in child processes only: where there is no OpenGL, VTK crashes instead of raising.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh.drawing.alignment import aligned
+from eulerplateau.mesh.drawing.view import ASPECT, LOOP_RADIUS, UP, View, common_view
+from eulerplateau.mesh.shape import Shape
+
+# Okabe and Ito's sky blue and orange, softened: front and back of the film.
+FRONT, BACK, LOOP = (0.44, 0.71, 0.89), (0.95, 0.65, 0.38), (0.17, 0.17, 0.17)
+GLOSS = {"ambient": 0.35, "diffuse": 0.65, "specular": 0.3}
+_WIDTH = 800
+
+
+def load_pyvista() -> Any:
+    """Return pyvista, kept from writing on the error stream.
+
+    VTK writes that there is no X server before it finds that it needs none.
+    """
+    import pyvista
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    return pyvista
+
+
+def film_plotter(shape: Shape, window: bool, options: Mapping[str, Any]) -> Any:
+    """Return a pyvista Plotter, in a window or off-screen, with a film and its loop.
+
+    The film lies as in the pictures of a run: its longest axis along x, its front towards
+    the viewer. `options` go to pyvista's add_mesh for the film.
+    """
+    pyvista = load_pyvista()
+    (turned,) = aligned([shape])
+    size = [_WIDTH, round(ASPECT * _WIDTH)]
+    plotter: Any = pyvista.Plotter(off_screen=not window, window_size=size)
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("ssaa")
+    film = pyvista.PolyData.from_regular_faces(turned.x, turned.triangles)
+    plain = {"color": FRONT, "backface_params": {"color": BACK}}
+    painted = {} if "scalars" in options else plain
+    plotter.add_mesh(film, **{"smooth_shading": True, **painted, **options})
+    plotter.add_mesh(loop_tube(turned.x_loop), color=LOOP, smooth_shading=True, **GLOSS)
+    point_camera(plotter, common_view([turned], raised=0.0))
+    return plotter
+
+
+def loop_tube(x_loop: FloatArray, colours: Mapping[str, NDArray[Any]] | None = None) -> Any:
+    """Return the tube (PolyData) round a closed loop (n_b, 3), of radius LOOP_RADIUS.
+
+    `colours` are values (n_b,) or (n_b, 3) on the loop, by name.
+    """
+    pyvista = load_pyvista()
+    # The wire passes its first edge twice: where the ends of VTK's tube meet end to end,
+    # they are twisted against each other and pinch it.
+    around = np.resize(np.arange(len(x_loop)), len(x_loop) + 2)
+    points = x_loop[around]
+    wire = pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
+    for name, values in (colours or {}).items():
+        wire[name] = values[around]
+    return wire.tube(radius=LOOP_RADIUS, n_sides=24)
+
+
+def point_camera(plotter: Any, view: View) -> None:
+    """Let a plotter see what a view shows."""
+    plotter.camera.parallel_projection = True
+    plotter.camera.focal_point = tuple(view.focus)
+    plotter.camera.position = tuple(view.focus + 5 * view.eye)
+    plotter.camera.up = tuple(UP)
+    plotter.camera.parallel_scale = view.half_height
+    plotter.reset_camera_clipping_range()

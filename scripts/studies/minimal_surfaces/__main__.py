@@ -10,20 +10,27 @@ import click
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from eulerplateau.arrays import FloatArray
-from eulerplateau.branches import BranchPoint, Settings, SpecialPoint, first_point
-from eulerplateau.branches.continuation import follow
-from eulerplateau.branches.special import branches_from, special_points
-from eulerplateau.film import AreaFilm, chart_at, minimal
-from eulerplateau.film.harmonic import moved_with
-from eulerplateau.mesh import DiskMesh
-from eulerplateau.solvers import make_problem, newton
+from eulerplateau.branches import (
+    BranchPoint,
+    Limits,
+    SpecialPoint,
+    StepControl,
+    branches_from,
+    equilibrium,
+    explore_from,
+    film_point,
+    follow,
+)
+from eulerplateau.film import AreaFilm
+from eulerplateau.film.harmonic import follow_loop
+from eulerplateau.mesh import Shape, measure
+from eulerplateau.solvers import Problem, solve
 from scripts.studies.common import make_mesh
 
 # Loop edges of disks, and the load of the films that are compared.
 LOOPS = (48, 72, 96, 144)
 LOAD, START = 1780.0, 1740.0
-SETTINGS = Settings(load_range=(1400.0, 2400.0), load_unit=2000.0)
+CONTROL = StepControl(window=(1400.0, 2400.0), unit=2000.0)
 # Loads this part below the onset are fitted.
 NEAR = 0.06
 # Of the film itself: docs/true-film.md.
@@ -31,7 +38,7 @@ EXACT_ONSET = 1855.677270245
 
 
 @dataclass(frozen=True)
-class Shape:
+class Quality:
     """A film: the gradient left inside it, and its smallest angle (degrees)."""
 
     left: float
@@ -44,8 +51,8 @@ class Comparison:
 
     loop_edges: int
     vertices: int
-    along_normals: Shape
-    free: Shape
+    along_normals: Quality
+    free: Quality
     smaller: float
     seconds: float
     onset: float
@@ -86,68 +93,66 @@ def comparisons() -> Iterator[Comparison]:
     """Yield one comparison for each of LOOPS."""
     for loop_edges in LOOPS:
         polygon = {"kind": "ellipse", "aspect": 1.0}
-        mesh = make_mesh(polygon=polygon, edge_length=2 * np.pi / loop_edges)
-        special = twist_point(mesh)
+        disk = make_mesh(polygon=polygon, edge_length=2 * np.pi / loop_edges)
+        film = AreaFilm(disk.loop, disk.interior)
+        problem = Problem(disk, film)
+        special = twist_point(problem)
         loads, twists, last = [], [], None
-        for point in follow(next(branches_from(special, SETTINGS)), SETTINGS):
-            if point.load < LOAD:
+        for point in follow(next(branches_from(special, CONTROL)), CONTROL):
+            if point.value < LOAD:
                 last = point
                 break
-            if point.load > (1 - NEAR) * special.point.load:
-                loads.append(point.load)
+            if point.value > (1 - NEAR) * special.point.value:
+                loads.append(point.value)
                 twists.append(np.ptp(point.x[:, 2]))
         assert last is not None, "the branch ended early"
         curve = np.polynomial.Polynomial.fit(np.square(twists), loads, 2)
-        yield compared(mesh, special, last, float(curve(0.0)))
+        yield compared(problem, film, special, last, float(curve(0.0)))
 
 
-def twist_point(mesh: DiskMesh) -> SpecialPoint:
+def twist_point(problem: Problem) -> SpecialPoint:
     """Return the first bifurcation of the planar two-lobed film on a mesh of the disk."""
-    problem = make_problem(mesh, "area")
-    found = newton.solve(problem, mesh.x * [1.25, 0.8, 1.0], np.zeros(mesh.n_b), START)
-    if found.triangles is not None:
-        problem = problem.with_triangles(found.triangles)
-    loop = found.x[mesh.loop]
-    before = first_point(problem.near(found.x), loop, START, SETTINGS)
-    for after in follow(before, SETTINGS):
-        for special in special_points(before, after, SETTINGS):
-            return special
-        before = after
-    raise AssertionError("no bifurcation met")
+    found = solve(problem, START, problem.disk.x * [1.25, 0.8, 1.0])
+    start = film_point(found, problem, CONTROL)
+    points = explore_from(start, CONTROL, Limits(special_points=0))
+    return next(point.special for point in points if point.special is not None)
 
 
 def compared(
-    mesh: DiskMesh, special: SpecialPoint, point: BranchPoint, onset: float
+    problem: Problem,
+    film: AreaFilm,
+    special: SpecialPoint,
+    point: BranchPoint,
+    onset: float,
 ) -> Comparison:
     """Compare the films on a twisted loop: on the flat film's mesh, and set free."""
-    flat = special.point
-    film = flat.problem.film
-    assert isinstance(film, AreaFilm)
-    bent = moved_with(film, flat.film, point.x)
-    along = chart_at(film, bent).relax(point.x)
+    flat = equilibrium(special.point).shape
+    bent = follow_loop(film.tiling(flat.triangles), flat.x, point.x)
+    heights = film.of_loop(flat.moved(bent))
+    along = heights.shape(point.x)
     started = time.process_time()
-    found = minimal(film, along.x)
+    released = heights.released(point.x)
     seconds = time.process_time() - started
-    assert found is not None, "no discrete minimal surface"
-    sides = found[0].sides(found[1])
+    assert released is not heights, "no discrete minimal surface"
+    free = released.shape(point.x)
+    areas = [film.energy_gradient(shape, 1.0)[0] for shape in (along, free)]
     return Comparison(
-        loop_edges=mesh.n_b,
-        vertices=mesh.n_v,
-        along_normals=shape(film, along.x),
-        free=shape(*found),
-        smaller=1 - float(sides.areas.sum()) / along.area,
+        loop_edges=problem.disk.n_b,
+        vertices=problem.disk.n_v,
+        along_normals=quality(problem, along),
+        free=quality(problem, free),
+        smaller=1 - areas[1] / areas[0],
         seconds=seconds,
-        onset=flat.load,
+        onset=special.point.value,
         onset_of_twisted=onset,
     )
 
 
-def shape(film: AreaFilm, x: FloatArray) -> Shape:
-    """Return what is left of the gradient inside a film (n_v, 3), and its worst angle."""
-    sides = film.sides(x)
-    pull = np.abs(film.gradient(sides)).max(axis=1)
-    left = float(pull[film.interior].max() / pull.max())
-    return Shape(left, sides.smallest_angle)
+def quality(problem: Problem, shape: Shape) -> Quality:
+    """Return what is left of the gradient inside a film, and its worst angle."""
+    pull = np.abs(problem.film.energy_gradient(shape, 1.0)[1]).max(axis=1)
+    left = float(pull[problem.disk.interior].max() / pull.max())
+    return Quality(left, measure(problem.disk, shape).min_angle)
 
 
 if __name__ == "__main__":

@@ -13,10 +13,8 @@ from threadpoolctl import threadpool_limits
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.film import AreaFilm
-from eulerplateau.film.area import area
-from eulerplateau.loop import Loop
-from eulerplateau.mesh import DiskMesh, load_mesh
-from eulerplateau.solvers import make_problem, newton
+from eulerplateau.mesh import DiskMesh, Shape, load_mesh
+from eulerplateau.solvers import Problem, displaced, solve
 from scripts.studies.common import ROOT
 
 MESH = ROOT / "meshes" / "elongated.vtp"
@@ -58,33 +56,29 @@ def main() -> None:
 
 def outcomes(mesh: DiskMesh) -> Iterator[Outcome]:
     """Yield what either method comes to, from the flat polygon with a small kick."""
-    film, problem = area(mesh), make_problem(mesh, "area")
-    noise = np.random.default_rng(1).standard_normal(mesh.n_v)
-    start = mesh.x + KICK * np.outer(noise, [0.0, 0.0, 1.0])
-    nobody = np.zeros(mesh.n_b)
+    film = AreaFilm(mesh.loop, mesh.interior)
+    problem = Problem(mesh, film)
+    start = problem.shape(displaced(mesh, KICK, 1))
     for load in LOADS:
-        x, iterations = all_coordinates(mesh, film, start, load)
-        yield outcome(mesh, film, x, load, "all coordinates", iterations)
-        found = newton.solve(problem, start, nobody, load)
-        here = film if found.triangles is None else film.retiled(found.triangles)
-        yield outcome(mesh, here, found.x, load, "along normals", found.iterations)
+        shape, iterations = all_coordinates(problem, start, load)
+        yield outcome(problem, film, shape, load, "all coordinates", iterations)
+        found = solve(problem, load, start)
+        yield outcome(problem, film, found.shape, load, "along normals", found.iterations)
 
 
-def all_coordinates(
-    mesh: DiskMesh, film: AreaFilm, x: FloatArray, load: float
-) -> tuple[FloatArray, int]:
-    """Return the shape (n_v, 3) that scipy's CG comes to, and its iterations."""
-    problem, loop = make_problem(mesh, "area"), Loop(mesh.rest_lengths)
+def all_coordinates(problem: Problem, start: Shape, load: float) -> tuple[Shape, int]:
+    """Return the shape that scipy's CG comes to, and its iterations."""
+    loop, shape = problem.loop, start
     penalty = 4 / float(loop.rest_lengths.mean()) ** 2
-    multipliers = np.zeros(mesh.n_b)
+    multipliers = np.zeros(problem.disk.n_b)
     unit = float(np.sqrt(loop.rest_lengths.min() ** 3 / 32))
     spent = 0
 
     def lagrangian(scaled: FloatArray) -> tuple[float, FloatArray]:
-        at = unit * scaled.reshape(x.shape)
-        value, gradient = film.energy_gradient(at, load)
+        at = start.moved(unit * scaled.reshape(start.x.shape))
+        value, gradient = problem.film.energy_gradient(at, load)
         bending, force = problem.bending_energy(at)
-        excess = loop.constraint(at[mesh.loop])
+        excess = loop.constraint(at.x_loop)
         tension = multipliers + penalty * excess / loop.rest_lengths
         force = force + problem.tension_force(at, tension)
         stretching = (multipliers + 0.5 * penalty * excess / loop.rest_lengths) @ excess
@@ -92,27 +86,33 @@ def all_coordinates(
 
     for _ in range(ROUNDS):
         options = {"maxiter": ITERATIONS, "gtol": 1e-6}
-        scaled = x.ravel() / unit
+        scaled = shape.x.ravel() / unit
         found = minimize(lagrangian, scaled, jac=True, method="CG", options=options)
-        x, spent = unit * found.x.reshape(x.shape), spent + int(found.nit)
-        excess = loop.constraint(x[mesh.loop])
+        shape = start.moved(unit * found.x.reshape(start.x.shape))
+        spent += int(found.nit)
+        excess = loop.constraint(shape.x_loop)
         multipliers = multipliers + penalty * excess / loop.rest_lengths
-    return x, spent
+    return shape, spent
 
 
 def outcome(
-    mesh: DiskMesh, film: AreaFilm, x: FloatArray, load: float, method: str, iterations: int
+    problem: Problem,
+    film: AreaFilm,
+    shape: Shape,
+    load: float,
+    method: str,
+    iterations: int,
 ) -> Outcome:
     """Measure a shape against the exact planar film."""
-    problem, sides = make_problem(mesh, "area"), film.sides(x)
-    energy = problem.bending_energy(x)[0] + load * float(sides.areas.sum())
-    on_loop = np.isin(film.triangles, mesh.loop).any(axis=1)
+    sides = film.tiling(shape.triangles).sides(shape.x)
+    energy = problem.bending_energy(shape)[0] + load * float(sides.areas.sum())
+    on_loop = np.isin(shape.triangles, shape.loop).any(axis=1)
     return Outcome(
         load=load,
         method=method,
         iterations=iterations,
         excess=energy / planar_film(2, load).energy - 1,
-        length_error=problem.length_error(x),
+        length_error=problem.length_error(shape),
         strip=float(sides.areas[on_loop].sum() / sides.areas.sum()),
         smallest_angle=sides.smallest_angle,
     )

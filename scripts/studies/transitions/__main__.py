@@ -11,24 +11,11 @@ from typing import Any
 import click
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.film.load import SPRING_TENSION
-from eulerplateau.mesh import DiskMesh, loop_frame, waist_path
-from eulerplateau.mesh.curvature import total_gauss_curvature
-from eulerplateau.mesh.waist import WaistPath, waist_twist
-from eulerplateau.runs import RunSpec
-from eulerplateau.runs.start import (
-    start_shape,
-)
-from eulerplateau.runs.sweep import (
-    Solver,
-    make_mesh,
-    sweep,
-)
-from eulerplateau.settings import validate
-from eulerplateau.solvers import Equilibrium, Problem, Status, make_problem, solve
-from scripts.studies.common import processes
+from eulerplateau.mesh import Measurer
+from eulerplateau.solvers import Equilibrium, Problem, Status, displaced, solve, sweep
+from scripts.studies.common import make_mesh, processes
 from scripts.studies.transitions.report import (
     BENT,
     DISK,
@@ -167,56 +154,47 @@ def starts_and_steps() -> dict[str, Case]:
 
 def locate(case: Case) -> Found:
     """Sweep a case and bisect every change of state."""
-    settings = {
-        "mesh": {
-            "polygon": POLYGONS[case.polygon],
-            "vertices": case.vertices,
-            "algorithm": case.algorithm,
-        },
-        "start": {"seed": case.seed, "displacement": case.displacement},
-        "film": {"model": case.film},
-        "sweep": {"loads": list(case.loads)},
-    }
-    spec = validate(settings, RunSpec, "case")
-    mesh = make_mesh(spec)
-    problem = make_problem(mesh, case.film)
-    classify = partial(state, mesh, waist_path(mesh))
+    disk = make_mesh(
+        polygon=POLYGONS[case.polygon], vertices=case.vertices, algorithm=case.algorithm
+    )
+    problem = Problem(disk, case.film)
+    start = displaced(disk, case.displacement, case.seed)
+    classify = partial(state, Measurer(disk))
     statuses = []
 
-    def recorded(*arguments: Any) -> Equilibrium:
-        found = solve(*arguments)
+    def noted(found: Equilibrium) -> Equilibrium:
         statuses.append((found.load, found.status))
         return found
 
-    shapes = sweep(problem, start_shape(spec, mesh), case.loads, recorded)
+    def solve_next(load: float, last: Equilibrium) -> Equilibrium:
+        return noted(solve(problem, load, last))
+
     transitions = [
-        bisect(problem, recorded, classify, last, first, case.width)
-        for last, first in pairwise(shapes)
-        if classify(last.x) != classify(first.x)
+        bisect(solve_next, classify, last, first, case.width)
+        for last, first in pairwise(map(noted, sweep(problem, case.loads, start)))
+        if classify(last) != classify(first)
     ]
     failures = tuple(
-        f"{case.polygon}, algorithm {case.algorithm}, {mesh.n_v} vertices, "
+        f"{case.polygon}, algorithm {case.algorithm}, {disk.n_v} vertices, "
         f"load {load:.3f}: {status.value}"
         for load, status in statuses
         if status is not Status.CONVERGED
     )
-    return Found(case, mesh.n_v, mesh.n_b, tuple(transitions), len(statuses), failures)
+    return Found(case, disk.n_v, disk.n_b, tuple(transitions), len(statuses), failures)
 
 
 def bisect(
-    problem: Problem,
-    solver: Solver,
-    classify: Callable[[FloatArray], str],
+    solve_next: Callable[[float, Equilibrium], Equilibrium],
+    classify: Callable[[Equilibrium], str],
     last: Equilibrium,
     first: Equilibrium,
     width: float,
 ) -> Transition:
     """Close the bracket around the change between the last shape and the first new one."""
-    old, new = classify(last.x), classify(first.x)
+    old, new = classify(last), classify(first)
     while abs(first.load - last.load) > width * last.load:
-        middle = 0.5 * (last.load + first.load)
-        found = solver(problem, last.x, last.multipliers, middle)
-        met = classify(found.x)
+        found = solve_next(0.5 * (last.load + first.load), last)
+        met = classify(found)
         if met == old:
             last = found
         else:
@@ -224,18 +202,18 @@ def bisect(
     return Transition(old, new, last.load, first.load)
 
 
-def state(mesh: DiskMesh, path: WaistPath | None, x: FloatArray) -> str:
+def state(measurer: Measurer, found: Equilibrium) -> str:
     """Tell the flat states from each other and from all others.
 
     A flat loop that winds twice has <K> = -2 pi (Gauss-Bonnet); half a turn of the film's
     normal across the waist makes an eight.
     """
-    frame = loop_frame(mesh, x)
-    if float(np.abs(frame.kappa_n) @ frame.mean_lengths) > FLAT:
+    measured = measurer.measure(found.shape)
+    if measured.abs_kappa_n > FLAT:
         return BENT
-    if total_gauss_curvature(mesh, x) < -0.95 * 2 * np.pi:
+    if measured.total_gauss_curvature < -0.95 * 2 * np.pi:
         return DOUBLE
-    return EIGHT if abs(waist_twist(path, x)) > 90 else DISK
+    return EIGHT if abs(measured.waist_twist) > 90 else DISK
 
 
 if __name__ == "__main__":

@@ -15,22 +15,13 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
 from eulerplateau.film import FILM_LOADS
-from eulerplateau.mesh import DiskMesh, measure, waist_path
-from eulerplateau.solvers import (
-    Equilibrium,
-    Problem,
-    Status,
-    conjugate_gradient,
-    loop_energy,
-    make_problem,
-    newton,
-    tangent_model,
-)
+from eulerplateau.mesh import DiskMesh, measure
+from eulerplateau.solvers import Equilibrium, Problem, Status, solve, tangent_model
 
 # A film that the cases are to be tried on too is one more word here.
 FILMS = ("springs", "dirichlet", "area")
 Spoiler = Callable[["Disk", float], "Disk"]
-SOLVERS = {"newton": newton.solve, "cg": conjugate_gradient.solve}
+SOLVERS = ("newton", "cg")
 
 
 @dataclass(frozen=True)
@@ -83,18 +74,13 @@ def run(case: Disk, film: str, load: float, solver: str = "newton") -> Outcome:
     """Return what a solver makes of a case, within its own limit of iterations."""
     try:
         mesh = case.mesh
-        problem = make_problem(mesh, film)
+        problem = Problem(mesh, film)
     except MeshError as error:
         return Outcome(refusal=error)
-    start = mesh.x + case.displacement
-    found = SOLVERS[solver](problem, start, np.zeros(mesh.n_b), load)
-    if not np.isfinite([found.energy, *found.x.ravel()]).all():
+    found = solve(problem, load, mesh.x + case.displacement, solver=solver)
+    if not np.isfinite([found.energy, *found.shape.x.ravel()]).all():
         return Outcome(found=found)
-    if found.triangles is not None:
-        mesh = mesh.with_triangles(found.triangles)
-        problem = problem.with_triangles(found.triangles)
-    shape = asdict(measure(mesh, found.x, waist_path(mesh)))
-    outcome = Outcome(None, found, shape)
+    outcome = Outcome(None, found, asdict(measure(mesh, found.shape)))
     if not outcome.balanced:
         return outcome
     return replace(outcome, condition=condition(problem, found))
@@ -106,9 +92,8 @@ def condition(problem: Problem, found: Equilibrium) -> float:
     Rigid motions left out. It is the factor by which rounding of the forces may be
     magnified in the positions.
     """
-    near = problem.near(found.x)
-    energy = loop_energy(near, found.load)
-    model = tangent_model(energy, found.x[problem.loop_vertices])
+    energy = problem.film.of_loop(found.shape).energy(problem.loop, found.load)
+    model = tangent_model(energy, found.shape.x_loop)
     values = np.abs(model.eigenvalues)
     return float(values.max() / values.min()) if len(values) else 1.0
 

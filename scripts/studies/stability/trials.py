@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.solvers import Status, make_problem
+from eulerplateau.solvers import Problem, Status
 from scripts.studies.common import make_mesh
 from scripts.studies.stability import cases
 from scripts.studies.stability.cases import Disk, Outcome
@@ -163,7 +163,7 @@ def _reference(trial: Trial, outcome: Outcome) -> tuple[Outcome, str]:
     case, found = trial.case, outcome
     while found.word == Status.UNRESOLVED.value and 4 * len(case.points) < _LARGEST:
         assert found.found is not None
-        case = refined(case, found.found.x)
+        case = refined(case, found.found.shape.x)
         found = cases.run(case, trial.film, trial.load)
     return found, f"{len(case.points)} vertices, {found.word}"
 
@@ -192,8 +192,8 @@ def _energy_error(trial: Trial, outcome: Outcome, reference: Outcome) -> float:
         return np.nan
     expected = two.energy
     if trial.against == BARE:
-        problem = make_problem(trial.case.mesh, trial.film)
-        expected += trial.load * problem.film_energy(two.x, 1.0)[0]
+        film = Problem(trial.case.mesh, trial.film).film
+        expected += trial.load * film.energy_gradient(two.shape, 1.0)[0]
     return abs(one.energy / expected - 1)
 
 

@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh import DiskMesh
-from eulerplateau.solvers import Equilibrium, Problem, Status
+from eulerplateau.mesh import DiskMesh, Shape
+from eulerplateau.solvers import Equilibrium, Problem, Status, solve
 from scripts.studies.error_vs_time.scenes import (
     Scene,
     gyration,
@@ -50,12 +50,12 @@ def timed(
     start_up, began = time.process_time(), time.perf_counter()
     for repeat in range(REPEATS):
         cpu = time.process_time()
-        found, set_up, solve = run()
+        found, set_up, seconds = run()
         cpu = time.process_time() - cpu
         yield {
             "repeat": repeat,
             "set_up": set_up,
-            "solve": solve,
+            "solve": seconds,
             "cpu": cpu,
             "start_up": start_up,
             "memory": peak_memory(),
@@ -72,47 +72,46 @@ def solved(
 
     Carrying the shape from mesh to mesh counts as solving.
     """
-    from eulerplateau.solvers import conjugate_gradient, newton
-    from eulerplateau.solvers.problem import make_problem
-
-    solve = {"newton": newton.solve, "cg": conjugate_gradient.solve}[solver]
     x, found, steps = scene.start(meshes[0]), None, 0
     set_up, started = 0.0, time.perf_counter()
     for number, mesh in enumerate(meshes):
         if found is not None:
             before = meshes[number - 1]
-            x = prolong(before, found.x[before.loop], mesh, scene.in_plane)
+            x = prolong(before, found.shape.x_loop, mesh, scene.in_plane)
         making = time.perf_counter()
-        problem = make_problem(mesh, scene.film, plane=scene.in_plane)
+        problem = Problem(mesh, scene.film, in_plane=scene.in_plane)
         if scene.film != "area":
-            _ = problem.condensed
+            problem.film.of_loop(mesh.shape)
         set_up += time.perf_counter() - making
         if scene.threshold is not None:
-            threshold = disk_threshold(problem, mesh, scene.transverse)
+            threshold = disk_threshold(problem, scene.transverse)
             return threshold, set_up, time.perf_counter() - started - set_up
         if scene.saddle:
-            found = saddle_in_plane(problem, x, scene.load)
+            found = saddle_in_plane(problem, problem.shape(x), scene.load)
         else:
-            found = solve(problem, x, np.zeros(mesh.n_b), scene.load)
+            found = solve(problem, scene.load, x, solver=solver)
         steps += found.iterations
     assert found is not None
     total = time.perf_counter() - started
     return replace(found, iterations=steps), set_up, total - set_up
 
 
-def saddle_in_plane(problem: Problem, x: FloatArray, load: float) -> Equilibrium:
-    """Return the equilibrium next to x (n_v, 3) in the plane, whatever its index."""
-    from eulerplateau.film.plane_energy import PlaneEnergy
+def saddle_in_plane(problem: Problem, start: Shape, load: float) -> Equilibrium:
+    """Return the equilibrium next to a start in the plane, whatever its index.
 
+    What lies inside stays where it was: in its plane the film is its polygon.
+    """
     from eulerplateau.solvers.in_plane.newton import settle_in_plane
 
-    x, loop = x.copy(), problem.loop_vertices
-    flat = settle_in_plane(PlaneEnergy(problem.loop, load), x[loop, :2], 100)
+    film = problem.film.of_loop(start)
+    flat = settle_in_plane(problem.loop, load, film.project(start.x_loop), 100)
     if flat is None:
-        nothing = np.zeros(len(loop))
-        return problem.equilibrium(x, nothing, load, Status.STALLED)
-    x[loop, :2] = flat.x
-    found = problem.equilibrium(x, flat.multipliers, load, Status.CONVERGED)
+        nothing = np.zeros(len(start.loop))
+        return problem.equilibrium(start, nothing, load, Status.STALLED)
+    x = start.x.copy()
+    x[start.loop] = film.lift(flat.x)
+    shape = start.moved(x)
+    found = problem.equilibrium(shape, flat.multipliers, load, Status.CONVERGED)
     return replace(found, iterations=flat.iterations)
 
 
@@ -129,7 +128,7 @@ def what(
             "shape_error": math.nan,
             "status": "converged",
         }
-    loop = found.x[mesh.loop]
+    loop = found.shape.x_loop
     return {
         "value": found.energy,
         "iterations": found.iterations,

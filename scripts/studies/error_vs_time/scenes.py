@@ -18,9 +18,9 @@ from scipy.optimize import minimize_scalar
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import PlanarFilm, planar_film
+from eulerplateau.film import make_film
 from eulerplateau.mesh import DiskMesh
 from eulerplateau.mesh.polygon import ellipse, stretched_hexagon
-from eulerplateau.solvers import make_problem
 from scripts.studies.common import make_mesh
 
 # Edge length deep inside over edge length at the loop, of graded meshes.
@@ -169,7 +169,7 @@ def prolong(
     spline = CubicSpline(length / length[-1], closed, bc_type="periodic")
     x_loop = spline(np.concatenate([[0.0], np.cumsum(fine.rest_lengths)[:-1]]))
     if not in_plane:
-        return make_problem(fine, "dirichlet").condensed.extend(x_loop)
+        return make_film(fine, "dirichlet").carried(fine.shape, x_loop).x
     x = fine.x.copy()
     x[fine.loop] = x_loop
     return x

@@ -9,29 +9,26 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import Condensation
 from eulerplateau.loop import backward_differences
 from eulerplateau.mesh import DiskMesh
-from eulerplateau.solvers import Problem, conjugate_gradient, make_problem, newton
+from eulerplateau.solvers import SOLVERS, Equilibrium, Problem, displaced, solve
 from scripts.studies.benchmark.report import draw, report, summary, write_csv
 from scripts.studies.common import make_mesh
 
 SIZES = (474, 2000, 7500, 50_000, 200_000)
-SOLVERS: dict[str, Callable[..., Any]] = {
-    "cg": conjugate_gradient.solve,
-    "newton": newton.solve,
-}
 COLD, WARM = 700.0, 710.0
 # A solver that has not finished the cold task after this long is not run any further.
 SECONDS = 300.0
 REPEATS = {"cg": 3, "newton": 5}
+
+Result = TypeVar("Result")
 
 
 class OutOfTimeError(Exception):
@@ -42,9 +39,8 @@ class Watch:
     """Collects (seconds, error) of a solver's reports; judging them is not counted."""
 
     def __init__(self, problem: Problem, load: float, answer: float) -> None:
-        condensed = problem.condensed
-        assert isinstance(condensed, Condensation)
-        self.film = load * condensed.stiffness
+        energy = problem.film.of_loop(problem.disk.shape).energy(problem.loop, load)
+        self.film = energy.terms["film"]
         self.problem, self.answer = problem, answer
         self.points: list[tuple[float, float]] = []
         self.started = time.perf_counter()
@@ -52,7 +48,7 @@ class Watch:
     def __call__(self, x_loop: FloatArray) -> None:
         """Judge the loop (n_b, 3) that a solver reports."""
         now = time.perf_counter()
-        film = float(np.sum(x_loop * (self.film @ x_loop)))
+        film = self.film.change(np.zeros_like(x_loop), x_loop)
         off = abs((film + bending_energy(self.problem, x_loop)) / self.answer - 1)
         error = max(off, self.problem.loop.length_error(x_loop))
         self.points.append((now - self.started, error))
@@ -77,7 +73,7 @@ def main(context: click.Context, sizes: str, out: Path) -> None:
     if context.invoked_subcommand is not None:
         return
     cases = []
-    alive = {"cg", "newton"}
+    alive = set(SOLVERS)
     for size in map(int, sizes.split(",")):
         for solver in sorted(alive):
             case = run_apart(size, solver)
@@ -112,19 +108,19 @@ def run_apart(size: int, solver: str) -> dict[str, Any]:
 def measure(size: int, solver: str) -> dict[str, Any]:
     """Return set-up times, peak memory and the runs of both tasks."""
     mesh = hexagon(size)
-    problem, set_up = timed(lambda: make_problem(mesh))
-    _, condensed = timed(lambda: problem.condensed)
-    flat, nothing = displaced(mesh), np.zeros(mesh.n_b)
-    cold = newton.solve(problem, flat, nothing, COLD)
-    warm = newton.solve(problem, cold.x, cold.multipliers, WARM)
-    tasks = {
-        "cold": (COLD, flat, nothing, cold.energy),
-        "warm": (WARM, cold.x, cold.multipliers, warm.energy),
+    problem, set_up = timed(lambda: Problem(mesh))
+    _, condensed = timed(lambda: problem.film.of_loop(mesh.shape))
+    flat = displaced(mesh, 1e-3, 1)
+    cold = solve(problem, COLD, flat)
+    warm = solve(problem, WARM, cold)
+    tasks: dict[str, tuple[FloatArray | Equilibrium, Equilibrium]] = {
+        "cold": (flat, cold),
+        "warm": (cold, warm),
     }
     runs = []
-    for task, (load, x, multipliers, answer) in tasks.items():
+    for task, (start, answer) in tasks.items():
         for repeat in range(REPEATS[solver]):
-            run = timed_run(problem, solver, x, multipliers, load, answer)
+            run = timed_run(problem, solver, start, answer)
             runs.append({"task": task, "repeat": repeat, **run})
             if run["seconds"] > 0.2 * SECONDS:
                 break
@@ -147,14 +143,7 @@ def hexagon(size: int) -> DiskMesh:
     return make_mesh(polygon=polygon, vertices=size, algorithm=6)
 
 
-def displaced(mesh: DiskMesh) -> FloatArray:
-    """Return the flat mesh with the displacement of runs/elongated.toml."""
-    x = mesh.x.copy()
-    x[:, 2] += 1e-3 * np.random.default_rng(1).standard_normal(mesh.n_v)
-    return x
-
-
-def timed(call: Callable[[], Any]) -> tuple[Any, float]:
+def timed(call: Callable[[], Result]) -> tuple[Result, float]:
     """Return what `call` returns, and the seconds it took."""
     started = time.perf_counter()
     result = call()
@@ -164,15 +153,13 @@ def timed(call: Callable[[], Any]) -> tuple[Any, float]:
 def timed_run(
     problem: Problem,
     solver: str,
-    x: FloatArray,
-    multipliers: FloatArray,
-    load: float,
-    answer: float,
+    start: FloatArray | Equilibrium,
+    answer: Equilibrium,
 ) -> dict[str, Any]:
     """Return one run: the whole solve's seconds and the errors on the way."""
-    watch = Watch(problem, load, answer)
+    watch = Watch(problem, answer.load, answer.energy)
     try:
-        found = SOLVERS[solver](problem, x, multipliers, load, observe=watch)
+        found = solve(problem, answer.load, start, solver=solver, observe=watch)
     except OutOfTimeError:
         seconds, error = watch.points[-1]
         return {

@@ -186,7 +186,7 @@ def evolver_bending(x: FloatArray) -> float:
 
 def bending(mesh: DiskMesh) -> float:
     """The bending energy of a mesh at rest."""
-    return Problem(mesh).bending_energy(mesh.x)[0]
+    return Problem(mesh).bending_energy(mesh.shape)[0]
 
 
 def test_bending_of_evolver_and_ours_differ_by_a_twelfth_of_the_squared_angle() -> None:

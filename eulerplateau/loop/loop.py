@@ -59,10 +59,6 @@ class Loop:
         lengths = np.linalg.norm(self.chords(x_loop), axis=1)
         return float(np.abs(lengths / self.rest_lengths - 1).max())
 
-    def largest_turning(self, x_loop: FloatArray) -> float:
-        """Return the largest angle between consecutive edges, degrees, in [0, 180]."""
-        return largest_turning(x_loop)
-
     def strands_meet(self, x_loop: FloatArray) -> bool:
         """Whether two stretches of the loop have come as close as neighbours are."""
         return strands_meet(x_loop, float(self.rest_lengths.max()))

@@ -15,7 +15,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.film import Film, make_film
-from eulerplateau.loop import Loop, kernels, remove_sliding
+from eulerplateau.loop import Loop, kernels, largest_turning, remove_sliding
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers.equilibrium import (
     LARGEST_LOAD,
@@ -199,6 +199,6 @@ class Problem:
             return replace(found, status=Status.PINCHED)
         if not found.converged:
             return found
-        turning = self.loop.largest_turning(found.shape.x_loop)
+        turning = largest_turning(found.shape.x_loop)
         resolved = turning <= RESOLVED_TURNING
         return found if resolved else replace(found, status=Status.UNRESOLVED)

@@ -113,7 +113,7 @@ def test_uneven_edges_come_to_the_same_film() -> None:
         model = tangent_model(energy, found[0].x)
         assert model.residual < 1e-8
         scale = float(np.abs(model.tensions).max())
-        np.testing.assert_allclose(found[0].multipliers, model.tensions, atol=1e-8 * scale)
+        np.testing.assert_allclose(found[0].tensions, model.tensions, atol=1e-8 * scale)
         errors.append(energy_of(energy, found[0].x) - exact)
     assert shapes.fitted_order([1 / 60, 1 / 120, 1 / 240], errors) == pytest.approx(
         2.0, abs=0.1

@@ -42,7 +42,7 @@ class PlaneEquilibrium:
     """A polygon (n_b, 2) in equilibrium, its edge tensions (n_b,), and the steps taken."""
 
     x: FloatArray
-    multipliers: FloatArray
+    tensions: FloatArray
     iterations: int
 
 

@@ -55,5 +55,5 @@ def search(
         spectrum = state.stability or models.spectrum(state.model)
     shape = film.shape(polygon.x)
     return problem.record(
-        shape, polygon.multipliers, load, status, spectrum, polygon.iterations
+        shape, polygon.tensions, load, status, spectrum, polygon.iterations
     )

@@ -111,7 +111,7 @@ def saddle_in_plane(problem: Problem, start: Shape, load: float) -> Equilibrium:
     x = start.x.copy()
     x[start.loop] = film.lift(flat.x)
     shape = start.moved(x)
-    found = problem.equilibrium(shape, flat.multipliers, load, Status.CONVERGED)
+    found = problem.equilibrium(shape, flat.tensions, load, Status.CONVERGED)
     return replace(found, iterations=flat.iterations)
 
 

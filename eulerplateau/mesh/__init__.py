@@ -6,6 +6,7 @@
     files.py     mesh files, formats.py: their formats, to which another is added; vtp.py
     measures.py  the numbers of a shape that become columns of sweep.csv, on curvature.py,
                  waist.py (twist) and crossings.py (self-intersections)
+    drawing/     how a film is drawn, in a child process: one shape, or those of a run
     triangles.py areas, angles, neighbours; whole_files.py: a whole file or none
 
 A disk's lengths are in units of L, the length of its loop.

@@ -62,21 +62,22 @@ class Shape:
         else:
             write_triangles(Path(path), self.x, self.triangles)
 
-    def plot(self, **options: Any) -> Picture:
+    def plot(self, *, window: bool | None = None, **options: Any) -> Picture:
         """Show the film, blue where its normal points to, and its loop; return a picture.
 
-        Where there is a display it opens in a window, to be turned and closed; a notebook
-        shows the picture that is returned, and `write` saves it. The window and the picture
-        are made by pyvista in a child process. `options` are those of its `add_mesh` for
-        the film, such as opacity=0.5, show_edges=True or scalars=(n_v,) values.
+        Where there is a display it opens in a `window`, to be turned and closed, unless
+        that is False; a notebook shows the picture that is returned, and its `write` saves
+        it. Window and picture are made by pyvista in a child process. `options` are those
+        of its `add_mesh` for the film: opacity=0.5, show_edges=True, scalars=(n_v,) values.
 
         Raises MissingLibraryError, which says what to install, where drawing does not work,
         and SpecError if pyvista cannot draw this film with these options.
         """
         from eulerplateau.mesh.drawing.picture import draw_film, windows_open
 
+        shown = windows_open() if window is None else window
         surface = self.x, self.triangles, self.loop
-        return draw_film(*surface, window=windows_open(), options=options)
+        return draw_film(*surface, window=shown, options=options)
 
     def _repr_png_(self) -> bytes | None:
         """Return what a notebook shows: a picture, or None where none can be drawn."""

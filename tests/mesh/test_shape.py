@@ -90,11 +90,10 @@ def test_notebook_shows_the_front_of_a_film_and_its_loop(shape: Shape) -> None:
     assert 0.002 < dark.mean() < 0.1
 
 
-def test_plot_without_a_display_returns_a_picture_with_the_options(
-    tmp_path: Path, shape: Shape, monkeypatch: pytest.MonkeyPatch
+def test_plot_without_a_window_returns_a_picture_with_the_options(
+    tmp_path: Path, shape: Shape
 ) -> None:
-    monkeypatch.delenv("DISPLAY", raising=False)
-    red = shape.plot(color="red", show_edges=True)
+    red = shape.plot(window=False, color="red", show_edges=True)
     assert isinstance(red, Picture)
     assert bluish(red.png) == 0.0
     red.write(tmp_path / "film.png")
@@ -103,7 +102,7 @@ def test_plot_without_a_display_returns_a_picture_with_the_options(
 
 def test_options_that_pyvista_does_not_know_are_named(shape: Shape) -> None:
     with pytest.raises(SpecError, match="colourr"):
-        shape.plot(colourr="red")
+        shape.plot(window=False, colourr="red")
 
 
 def test_a_film_that_cannot_be_drawn_costs_a_notebook_one_line(

@@ -12,7 +12,14 @@ from eulerplateau.film import Stiffness
 from eulerplateau.film.plane import PolygonArea
 from eulerplateau.loop import Loop, LoopEnergy, free_motions, inextensible
 from eulerplateau.mesh.shape import Shape
-from eulerplateau.solvers import Problem, Status, TangentModel, solve, tangent_model
+from eulerplateau.solvers import (
+    Equilibrium,
+    Problem,
+    Status,
+    TangentModel,
+    solve,
+    tangent_model,
+)
 
 
 def loop_energy(problem: Problem, load: float, near: Shape | None = None) -> LoopEnergy:
@@ -76,6 +83,18 @@ def ring(n: int) -> tuple[Loop, FloatArray]:
     angle = 2 * np.pi * np.arange(n) / n
     x = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
     return Loop(np.full(n, 1 / n)), x / (2 * n * np.sin(np.pi / n))
+
+
+def assert_same_bits(one: Equilibrium, two: Equilibrium) -> None:
+    """Every number of two equilibria, but for the time they took."""
+    others = {"shape": None, "stability": None, "seconds": None}
+    numbers = [
+        {**vars(found), **vars(found.shape), **vars(found.stability), **others}
+        for found in (one, two)
+    ]
+    assert numbers[0].keys() == numbers[1].keys()
+    for name, value in numbers[0].items():
+        np.testing.assert_array_equal(numbers[1][name], value, err_msg=name)
 
 
 def turning(x_loop: FloatArray) -> float:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from eulerplateau.errors import SpecError
 from eulerplateau.loop.lengths import close_with_lengths
 from eulerplateau.loop.loop import largest_turning
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.settings import validate
-from eulerplateau.solvers.equilibrium import Equilibrium, Status
-from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers import Equilibrium, Problem, Status, solve
 from tests.helpers import equilibria
 from tests.helpers.extremes import FIXED, cases, oval
 
@@ -33,7 +33,7 @@ def test_load_next_to_nothing_adds_its_film_to_the_bare_loop_to_1e_11(
     """E(l) = E(0) + l F(0) + O(l^2), the loop being that of least bending energy."""
     bare, found = solved(film, 0.0), solved(film, load)
     assert found.status is Status.CONVERGED
-    slope = Problem(oval().mesh, film).film_energy(bare.x, 1.0)[0]
+    slope = Problem(oval().mesh, film).film.energy_gradient(bare.shape, 1.0)[0]
     assert found.energy == pytest.approx(bare.energy + load * slope, rel=1e-11)
     assert found.film_energy == pytest.approx(load * slope, rel=1e-6)
 
@@ -58,19 +58,13 @@ def test_load_beyond_the_mesh_ends_and_is_never_called_converged(
     film: str, load: float, solver: str
 ) -> None:
     case = oval(4)
-    problem = cases.Problem(case.mesh, film)
-    found = cases.SOLVERS[solver](
-        problem,
-        case.mesh.x + case.displacement,
-        np.zeros(24),
-        load,
-        max_iterations=2000,
-    )
+    problem, start = Problem(case.mesh, film), case.mesh.x + case.displacement
+    found = solve(problem, load, start, solver=solver, max_iterations=2000)
     assert found.status not in (Status.CONVERGED, Status.NOT_FINITE)
     assert found.iterations < 2 * 2000
     assert np.isfinite(found.energy)
     if found.status is Status.UNRESOLVED:
-        assert equilibria.turning(found.x[problem.loop_vertices]) > 30
+        assert equilibria.turning(found.shape.x_loop) > 30
 
 
 @pytest.mark.parametrize("load", HUGE)
@@ -84,13 +78,20 @@ def test_unresolved_equilibria_balance_all_the_same(film: str, load: float) -> N
 
 
 @pytest.mark.parametrize("solver", cases.SOLVERS)
-@pytest.mark.parametrize("load", [1e101, 1e200, 1e308, np.inf, np.nan])
+@pytest.mark.parametrize("load", [1e101, 1e200, 1e308, np.inf])
 def test_load_whose_forces_overflow_is_refused_as_not_finite(
     load: float, solver: str
 ) -> None:
     found = solved("springs", load, solver)
     assert found.status is Status.NOT_FINITE
     assert found.iterations == 0
+
+
+@pytest.mark.parametrize("solver", cases.SOLVERS)
+def test_load_that_is_no_number_is_refused_by_name(solver: str) -> None:
+    with pytest.raises(SpecError) as caught:
+        solved("springs", np.nan, solver)
+    assert caught.value.key == "load"
 
 
 @pytest.mark.parametrize("alpha", [1.0, 2.0**-10, 2.0**-20, 2.0**-40])
@@ -139,16 +140,16 @@ def test_any_record_is_judged_by_its_loop_alone(bend: float) -> None:
     guess = oval().mesh.x[problem.loop_vertices] * [bend, 1.0, 1.0]
     x_loop = close_with_lengths(problem.loop, guess)
     assert x_loop is not None
-    x = problem.condensed.extend(x_loop)
-    found = problem.equilibrium(x, np.zeros(36), 1.0, Status.CONVERGED)
-    assert problem.judged(found).status is equilibria.verdict(x_loop)
+    shape = equilibria.spanned(problem, x_loop)
+    found = problem.equilibrium(shape, np.zeros(36), 1.0, Status.CONVERGED)
+    assert problem.classified(found).status is equilibria.verdict(x_loop)
 
 
 def test_failures_keep_their_own_status() -> None:
     problem = Problem(cases.polygon(5).mesh)
     for status in set(Status) - {Status.CONVERGED}:
-        found = problem.equilibrium(cases.polygon(5).mesh.x, np.zeros(5), 1.0, status)
-        assert problem.judged(found).status is status
+        found = problem.equilibrium(problem.disk.shape, np.zeros(5), 1.0, status)
+        assert problem.classified(found).status is status
 
 
 def test_papers_mesh_carries_a_load_of_1e4_and_none_of_1e5(elongated: DiskMesh) -> None:

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from eulerplateau.solvers.condensed import loop_energy
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.motions import rigid_motions
 from eulerplateau.mesh.disk import DiskMesh
-from eulerplateau.solvers import newton
-from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.second_variation import stability
+from eulerplateau.mesh.shape import Shape
+from eulerplateau.solvers import Problem, solve, stability
 from tests.helpers import equilibria, shapes
+from tests.helpers.equilibria import loop_energy
 
 
 def whole_film_index(
-    problem: Problem, x: FloatArray, multipliers: FloatArray, load: float
+    problem: Problem, shape: Shape, tensions: FloatArray, load: float
 ) -> int:
     """Negative eigenvalues of the Lagrangian's Hessian over all vertices, interior too.
 
@@ -24,13 +23,14 @@ def whole_film_index(
     difference is the Hessian. By Haynsworth's theorem it has as many negative eigenvalues
     as the condensed one, for what is eliminated is positive definite.
     """
-    size = x.size
+    x, size = shape.x, shape.x.size
 
     def force(y: FloatArray) -> FloatArray:
-        parts = (problem.film_energy(y, load)[1], problem.bending_energy(y)[1])
-        return (parts[0] + parts[1] + problem.tension_force(y, multipliers)).ravel()
+        at = shape.moved(y.reshape(x.shape))
+        bent = problem.bending_energy(at)[1] + problem.tension_force(at, tensions)
+        return (problem.film.energy_gradient(at, load)[1] + bent).ravel()
 
-    hessian = np.stack([force(row.reshape(x.shape)) for row in np.eye(size)])
+    hessian = np.stack([force(row) for row in np.eye(size)])
     b = problem.loop_vertices
     rows = []
     for v in range(len(b)):
@@ -58,14 +58,14 @@ def test_morse_index_of_planar_films_is_that_of_the_whole_film(
     """Along the planar branch: stable, then with one unstable mode, then with two."""
     problem, met = Problem(long_lattice), []
     loads = [100, 250, 400, 550, 700, 850, 1000]
-    models = equilibria.planar(problem, long_lattice, loads)
+    models = equilibria.planar(problem, loads)
     for load, model in zip(loads, models, strict=True):
         found = stability(model)
-        x = problem.condensed.extend(model.x)
-        assert np.abs(x[:, 2]).max() < 1e-12
-        assert problem.residual(x, model.multipliers, load) < 1e-9
+        shape = equilibria.spanned(problem, model.x)
+        assert np.abs(shape.x[:, 2]).max() < 1e-12
+        assert problem.residual(shape, model.tensions, load) < 1e-9
         assert found.n_neutral == 0
-        assert found.n_unstable == whole_film_index(problem, x, model.multipliers, load)
+        assert found.n_unstable == whole_film_index(problem, shape, model.tensions, load)
         met.append(found.n_unstable)
     assert met == sorted(met)
     assert set(met) == {0, 1, 2}
@@ -79,13 +79,13 @@ def test_morse_index_of_a_regular_hexagon_jumps_by_two_and_that_of_its_saddle_is
     problem = Problem(mesh)
     loads = [100.0, 500.0, 900.0]
     indices = []
-    for load, model in zip(loads, equilibria.planar(problem, mesh, loads), strict=True):
-        x = problem.condensed.extend(model.x)
+    for load, model in zip(loads, equilibria.planar(problem, loads), strict=True):
+        shape = equilibria.spanned(problem, model.x)
         indices.append(stability(model).n_unstable)
-        assert indices[-1] == whole_film_index(problem, x, model.multipliers, load)
+        assert indices[-1] == whole_film_index(problem, shape, model.tensions, load)
     assert indices == [0, 0, 2]
-    saddle = newton.solve(problem, mesh.x, np.zeros(mesh.n_b), loads[-1])
-    assert np.ptp(saddle.x[:, 2]) > 0.01
+    saddle = solve(problem, loads[-1], mesh.x)
+    assert np.ptp(saddle.shape.x[:, 2]) > 0.01
     assert saddle.n_unstable == 0
 
 
@@ -94,15 +94,12 @@ def test_morse_index_of_films_in_space_is_that_of_the_whole_film(
 ) -> None:
     """A stable film followed down in load, where it turns unstable once and again."""
     load, met = 1200.0, []
-    stable = newton.solve(
-        oval_problem, shapes.crumpled(oval, 1e-3), np.zeros(oval.n_b), load
-    )
-    around = stable.x[oval.loop]
+    around = solve(oval_problem, load, shapes.crumpled(oval, 1e-3)).shape.x_loop
     while load >= 500.0:
         model = equilibria.critical_point(loop_energy(oval_problem, load), around)
-        x = oval_problem.condensed.extend(model.x)
+        shape = equilibria.spanned(oval_problem, model.x)
         met.append(stability(model).n_unstable)
-        assert met[-1] == whole_film_index(oval_problem, x, model.multipliers, load)
+        assert met[-1] == whole_film_index(oval_problem, shape, model.tensions, load)
         around, load = model.x, load - 100.0
     assert np.ptp(around[:, 2]) > 0.1
     assert set(met) == {0, 1, 2}

@@ -20,7 +20,8 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.point import BranchPoint
+from eulerplateau.branches import BranchPoint, FilmFamily
+from eulerplateau.loop import Loop
 from eulerplateau.mesh.curvature import LoopFrame, loop_frame
 from eulerplateau.mesh.disk import DiskMesh
 from tests.helpers import shapes, soap_films
@@ -39,24 +40,29 @@ def disk(mesh: DiskMesh, angle: float) -> BranchPoint:
     return soap_films.twisted_disk(mesh, 0.03, angle)
 
 
+def loop_of(point: BranchPoint) -> Loop:
+    assert isinstance(point.family, FilmFamily)
+    return point.family.problem.loop
+
+
 def stress_resultant(point: BranchPoint) -> FloatArray:
-    """F_v (n_b, 3), from bending and multipliers."""
-    loop = point.problem.loop
+    """F_v (n_b, 3), from bending and tensions."""
+    loop = loop_of(point)
     tangent = loop.chords(point.x) / loop.rest_lengths[:, None]
     bend = (tangent - np.roll(tangent, 1, axis=0)) / loop.mean_lengths[:, None]
     shear = 2 * (bend - np.roll(bend, -1, axis=0)) / loop.rest_lengths[:, None]
-    return shear + point.model.multipliers[:, None] * tangent
+    return shear + point.model.tensions[:, None] * tangent
 
 
 def frame_of(point: BranchPoint, mesh: DiskMesh) -> LoopFrame:
-    return loop_frame(soap_films.mesh_of(point, mesh), point.film)
+    return loop_frame(soap_films.mesh_of(point, mesh), soap_films.shape(point).x)
 
 
 def imbalance(point: BranchPoint, frame: LoopFrame) -> tuple[float, float]:
     """Relative errors of F' = -sigma T: of F itself, and of F' along T, both at worst."""
     force = stress_resultant(point)
     jump = force - np.roll(force, 1, axis=0)
-    left = jump / point.load + frame.conormal * frame.mean_lengths[:, None]
+    left = jump / point.value + frame.conormal * frame.mean_lengths[:, None]
     summed = np.cumsum(left, axis=0)
     summed -= summed.mean(axis=0)
     inwards = (left * frame.conormal).sum(axis=1) / frame.mean_lengths
@@ -98,7 +104,7 @@ def test_moments_of_the_rod_balance_on_every_loop() -> None:
     """m_v = 2 t_v x K_v, m' = -t x F: an identity of the discrete rod, for any lambda."""
     mesh = soap_films.irregular_disk(6)
     point = disk(mesh, 0.2)
-    loop = point.problem.loop
+    loop = loop_of(point)
     tangent = loop.chords(point.x) / loop.rest_lengths[:, None]
     bend = (tangent - np.roll(tangent, 1, axis=0)) / loop.mean_lengths[:, None]
     moment = 2 * np.cross(tangent, bend)

@@ -24,14 +24,14 @@ def large() -> DiskMesh:
 
 
 def test_parts_hold_every_interior_vertex_once(large: DiskMesh) -> None:
-    graph = springs(large).laplacian(large.n_v).tocsr()
+    graph = springs(large).laplacian().tocsr()
     parts = dissect(graph, large.loop, large.interior)
     assert len(parts) > 10
     np.testing.assert_array_equal(np.sort(np.concatenate(parts)), large.interior)
 
 
 def test_what_is_eliminated_first_falls_apart_into_small_pieces(large: DiskMesh) -> None:
-    graph = springs(large).laplacian(large.n_v).tocsr()
+    graph = springs(large).laplacian().tocsr()
     parts = dissect(graph, large.loop, large.interior)
     # The last part cuts the film in two, and so on down: without the last 2^k - 1 parts
     # no piece holds more than about 1 / 2^k of the vertices.
@@ -42,7 +42,7 @@ def test_what_is_eliminated_first_falls_apart_into_small_pieces(large: DiskMesh)
 
 
 def test_film_is_relaxed_and_stiffness_is_its_pull_on_the_loop(large: DiskMesh) -> None:
-    laplacian = springs(large).laplacian(large.n_v)
+    laplacian = springs(large).laplacian()
     condensed = condense(laplacian, large.loop, large.interior)
     around = shapes.crumpled(large, 0.1)[large.loop]
     force = laplacian @ condensed.extend(around)
@@ -58,7 +58,7 @@ def test_loop_without_interior_has_its_own_stiffness() -> None:
         np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),
         np.array([[0, 1, 2], [0, 2, 3]]),
     )
-    laplacian = springs(mesh).laplacian(mesh.n_v)
+    laplacian = springs(mesh).laplacian()
     condensed = condense(laplacian, mesh.loop, mesh.interior)
     expected = laplacian.toarray()[np.ix_(mesh.loop, mesh.loop)]
     np.testing.assert_array_equal(condensed.stiffness, expected)
@@ -68,9 +68,8 @@ def test_loop_without_interior_has_its_own_stiffness() -> None:
 CHAIN = """
 import json, resource, time
 import numpy as np
-from eulerplateau import newton
-from eulerplateau.meshing import MeshSpec, generate
-from eulerplateau.problem import Problem
+from eulerplateau.mesh import MeshSpec, generate
+from eulerplateau.solvers import Problem, solve
 from threadpoolctl import threadpool_limits
 
 polygon = {"kind": "stretched-hexagon", "factor": 2.0}
@@ -80,11 +79,11 @@ x[:, 2] += 1e-3 * np.random.default_rng(1).standard_normal(mesh.n_v)
 with threadpool_limits(1, user_api="blas"):
     started = time.perf_counter()
     problem = Problem(mesh)
-    problem.condensed
+    problem.film.of_loop(mesh.shape)
     seconds = [time.perf_counter() - started]
     for load in (700.0, 705.0):
-        found = newton.solve(problem, x, np.zeros(mesh.n_b), load)
-        x = found.x
+        found = solve(problem, load, x)
+        x = found.shape.x
         seconds.append(found.seconds)
 print(json.dumps({
     "seconds": seconds,

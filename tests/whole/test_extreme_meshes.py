@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.errors import MeshError
-from eulerplateau.solvers.equilibrium import Equilibrium, Status
+from eulerplateau.solvers import Equilibrium, Problem, Status, solve
 from tests.helpers.extremes import FIXED, TENSIONS, assert_same, cases, hexagon, oval
 
 RATIOS = (1e-2, 1e-4, 1e-8)
@@ -29,6 +29,8 @@ def test_stretched_polygon_and_its_turned_renumbered_twin_agree_or_both_are_refu
     one = cases.run(case, film, load)
     two = cases.run(cases.renumbered(cases.rotated(case)), film, load)
     words = {one.word, two.word}
+    if film == "springs" and tension < 5000:
+        assert words == {"converged"}
     if words <= {"converged", "unresolved"}:
         assert_same(one, two)
         assert len(words) == 1
@@ -68,7 +70,7 @@ def test_springs_do_not_feel_a_needle_by_one_bit(tension: float, ratio: float) -
     plain = found(oval(), "springs", load)
     pricked = found(cases.needle(oval(), ratio), "springs", load)
     assert pricked.energy == plain.energy
-    np.testing.assert_array_equal(pricked.x, plain.x)
+    np.testing.assert_array_equal(pricked.shape.x, plain.shape.x)
 
 
 @pytest.mark.parametrize("ratio", RATIOS)
@@ -123,21 +125,23 @@ def test_short_loop_edge_leaves_the_energy_its_digits(
 ) -> None:
     load = cases.own_load(film, tension)
     case = cases.short_edge(oval(), ratio)
-    twin = found(cases.renumbered(cases.rotated(case)), film, load)
-    assert found(case, film, load).energy == pytest.approx(twin.energy, rel=1e-11)
-
-
-@pytest.mark.parametrize("ratio", [1e-2, 1e-3])
-def test_cg_with_a_short_loop_edge_is_right_or_not_called_converged(ratio: float) -> None:
-    case = cases.short_edge(oval(3), ratio)
-    result = cases.SOLVERS["cg"](
-        cases.Problem(case.mesh, "springs"),
-        case.mesh.x + case.displacement,
-        np.zeros(18),
-        300.0,
-        max_iterations=5000,
+    one, twin = (
+        found(given, film, load) for given in (case, cases.renumbered(cases.rotated(case)))
     )
+    assert one.status is twin.status is Status.CONVERGED
+    assert one.energy == pytest.approx(twin.energy, rel=1e-11)
+
+
+@pytest.mark.parametrize(("ratio", "rings"), [(0.5, 4), (1e-2, 3), (1e-3, 3)])
+def test_cg_with_a_short_loop_edge_is_right_or_not_called_converged(
+    ratio: float, rings: int
+) -> None:
+    """Right where the edge is half as long as the others."""
+    case = cases.short_edge(oval(rings), ratio)
+    problem, start = Problem(case.mesh), case.mesh.x + case.displacement
+    result = solve(problem, 300.0, start, solver="cg", max_iterations=5000)
     assert result.status is not Status.NOT_FINITE
+    assert result.status is Status.CONVERGED or ratio < 0.5
     if result.status is Status.CONVERGED:
         reference = found(case, "springs", 300.0)
         assert result.energy == pytest.approx(reference.energy, rel=1e-6)

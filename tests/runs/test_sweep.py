@@ -16,12 +16,8 @@ from eulerplateau.mesh import write_mesh
 from eulerplateau.mesh.disk import DiskMesh
 from eulerplateau.mesh.files import read_triangles
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.start import (
-    start_shape,
-)
-from eulerplateau.runs.sweep import (
-    run_sweep,
-)
+from eulerplateau.runs.start import start_shape
+from eulerplateau.runs.sweep import run_sweep
 from eulerplateau.runs.table import Row, read_rows
 from eulerplateau.settings import validate
 from eulerplateau.solvers import Problem, Status, solve

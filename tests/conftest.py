@@ -11,8 +11,8 @@ import pytest
 import scipy.linalg  # noqa: F401
 from threadpoolctl import threadpool_limits
 
-from eulerplateau.mesh import load_mesh
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh import read_disk
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes
 
@@ -27,24 +27,24 @@ def _one_blas_thread() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def elongated() -> DiskMesh:
+def elongated() -> Disk:
     """The stored mesh of the paper's first experiment."""
-    return load_mesh(ROOT / "meshes" / "elongated.vtp")
+    return read_disk(ROOT / "meshes" / "elongated.vtp")
 
 
 @pytest.fixture(scope="session")
-def hexagon() -> DiskMesh:
+def hexagon() -> Disk:
     """The stored mesh of the paper's second experiment."""
-    return load_mesh(ROOT / "meshes" / "hexagon.vtp")
+    return read_disk(ROOT / "meshes" / "hexagon.vtp")
 
 
 @pytest.fixture(scope="session")
-def oval() -> DiskMesh:
+def oval() -> Disk:
     """127 vertices without any symmetry, once and a half as long as wide."""
     points, triangles = shapes.disk_points(6, jitter=0.2)
     return shapes.mesh_of(points * [1.5, 1.0], triangles)
 
 
 @pytest.fixture(scope="session")
-def oval_problem(oval: DiskMesh) -> Problem:
+def oval_problem(oval: Disk) -> Problem:
     return Problem(oval)

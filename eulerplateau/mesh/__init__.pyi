@@ -1,7 +1,6 @@
 from .curvature import angle_defects as angle_defects, loop_frame as loop_frame
-from .disk import Disk as Disk, DiskMesh as DiskMesh
+from .disk import Disk as Disk
 from .files import (
-    load_mesh as load_mesh,
     read_disk as read_disk,
     read_mesh as read_mesh,
     write_mesh as write_mesh,

@@ -247,6 +247,3 @@ def _refuse_edge(edges: IntArray, mask: ArrayLike, problem: str) -> None:
     if wrong.any():
         start, end = edges[np.flatnonzero(wrong)[0]]
         raise MeshError("edge", (int(start), int(end)), problem)
-
-
-DiskMesh = Disk

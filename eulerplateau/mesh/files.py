@@ -92,6 +92,3 @@ def _named_as_in_file(error: MeshError, used: IntArray, path: str | Path) -> Mes
         index = (int(used[index[0]]), int(used[index[1]]))
     problem = str(error).partition(": ")[2]
     return MeshError(error.kind, index, f"{problem} (in {path})")
-
-
-load_mesh = read_disk

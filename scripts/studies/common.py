@@ -12,13 +12,13 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from eulerplateau.mesh import DiskMesh, MeshSpec, generate
+from eulerplateau.mesh import Disk, MeshSpec, generate
 from eulerplateau.settings import validate
 
 ROOT = Path(__file__).parents[2]
 
 
-def make_mesh(**settings: Any) -> DiskMesh:
+def make_mesh(**settings: Any) -> Disk:
     """Return the mesh that a mesh specification with these settings describes."""
     return generate(validate(settings, MeshSpec, "mesh"))
 

@@ -10,7 +10,7 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.scaling import PowerLaw, fit_power
 from eulerplateau.mesh.curvature import loop_frame, total_gauss_curvature
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, solve, sweep
 
 # Relative distances from the onset. Nearer, double precision leaves open where a hexagon's
@@ -28,7 +28,7 @@ class Onset:
     total_gauss_curvature: FloatArray
 
 
-def critical_load(mesh: DiskMesh) -> float:
+def critical_load(mesh: Disk) -> float:
     """Follow the planar state's lowest eigenvalue towards zero, and extrapolate the rest.
 
     It falls linearly, so each secant tells the crossing; going nine tenths of the way
@@ -50,7 +50,7 @@ def critical_load(mesh: DiskMesh) -> float:
         first, found = found, solve(problem, load, found)
 
 
-def measured(mesh: DiskMesh) -> Onset:
+def measured(mesh: Disk) -> Onset:
     """Sweep down towards the onset from a displaced flat film."""
     onset = critical_load(mesh)
     loads = onset * (1 + np.geomspace(FARTHEST, NEAREST, COUNT))
@@ -67,12 +67,12 @@ def measured(mesh: DiskMesh) -> Onset:
 
 
 @pytest.fixture(scope="module")
-def twisting(elongated: DiskMesh) -> Onset:
+def twisting(elongated: Disk) -> Onset:
     return measured(elongated)
 
 
 @pytest.fixture(scope="module")
-def enneper(hexagon: DiskMesh) -> Onset:
+def enneper(hexagon: Disk) -> Onset:
     return measured(hexagon)
 
 

@@ -16,14 +16,14 @@ from eulerplateau.branches.special import BIFURCATION
 from eulerplateau.branches.symmetry import loop_distance
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.mesh import Measurer
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, solve
 from tests.helpers import shapes, soap_films
 
 LIMITS = Limits(special_points=1, unstable_modes=2, stop=lambda point: point.value > 2000)
 
 
-def regular_disk() -> DiskMesh:
+def regular_disk() -> Disk:
     return soap_films.irregular_disk(6, 0.0)
 
 

@@ -19,7 +19,7 @@ from eulerplateau.branches.special import (
     special_points,
 )
 from eulerplateau.branches.symmetry import OPERATIONS, loop_distance
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers.problem import Problem
 from tests.helpers import diagram
 from tests.helpers.diagram import CONTROL, Diagram
@@ -138,7 +138,7 @@ def test_index_changes_by_the_multiplicity(found: Diagram) -> None:
             assert sorted(ends) == [here.special.n_unstable, here.special.n_unstable + 1]
 
 
-def test_onset_of_the_hexagon_is_double(hexagon: DiskMesh) -> None:
+def test_onset_of_the_hexagon_is_double(hexagon: Disk) -> None:
     """A saddle may point any way: two modes are lost together, as one event."""
     problem = Problem(hexagon)
     control = StepControl(window=(800.0, 900.0), unit=900.0)

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from eulerplateau.mesh import load_mesh, write_mesh
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh import read_disk, write_mesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.table import COLUMNS, read_rows
 from tests.helpers.processes import PATIENCE, started
 
@@ -34,7 +34,7 @@ def sweep(*words: object, cwd: Path | None = None) -> Shell:
 
 
 @pytest.fixture
-def spec(tmp_path: Path, oval: DiskMesh) -> Path:
+def spec(tmp_path: Path, oval: Disk) -> Path:
     """A run of two loads on a stored mesh of 127 vertices."""
     write_mesh(oval, tmp_path / "oval.vtp")
     path = tmp_path / "run.toml"
@@ -259,7 +259,7 @@ def test_mesh_command_writes_a_mesh_that_sweep_takes(tmp_path: Path) -> None:
     polygon.write_text("vertices = 100\n[polygon]\nkind = 'regular'\nsides = 6\n")
     result = run("mesh", polygon, "-o", tmp_path / "mesh.vtp", "--quiet")
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
-    assert load_mesh(tmp_path / "mesh.vtp").n_v == pytest.approx(100, rel=0.02)
+    assert read_disk(tmp_path / "mesh.vtp").n_v == pytest.approx(100, rel=0.02)
     spec = tmp_path / "run.toml"
     spec.write_text('[mesh]\nfile = "mesh.vtp"\n[sweep]\nloads = [500]\n')
     assert sweep(spec).returncode == 0

@@ -14,19 +14,19 @@ from matplotlib.image import imread
 
 from eulerplateau.cli.plot import plot
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.comparison import WHAT
 from tests.helpers.plotted_runs import loads, record, row_at
 from tests.helpers.shapes import disk_points, mesh_of
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(5))
 
 
 @pytest.fixture(scope="module")
-def sweep(tmp_path_factory: pytest.TempPathFactory, mesh: DiskMesh) -> Path:
+def sweep(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
     rows = [row_at(step, load) for step, load in enumerate(loads())]
     return record(tmp_path_factory.mktemp("runs") / "long", mesh, rows)
 
@@ -59,7 +59,7 @@ def test_a_notebook_s_backend_is_not_asked_for(
 
 @pytest.mark.parametrize("case", ["missing", "no run", "no rows", "no onset"])
 def test_folders_that_cannot_be_plotted_end_with_exit_code_5(
-    tmp_path: Path, mesh: DiskMesh, case: str
+    tmp_path: Path, mesh: Disk, case: str
 ) -> None:
     folder = tmp_path / "run"
     if case == "no run":

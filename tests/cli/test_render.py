@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from eulerplateau.cli.render import render
 from eulerplateau.errors import EulerPlateauError, OutputError, SpecError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.render import chosen_steps
 from eulerplateau.runs import read_run
 from tests.helpers.shapes import disk_points, mesh_of
@@ -20,12 +20,12 @@ from tests.runs.test_output import ROW
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(4))
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory, mesh: DiskMesh) -> Path:
+def run(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
     """Loads 0, 100, ..., 400."""
     path = tmp_path_factory.mktemp("run")
     record(path, mesh, [twisted(mesh, t) for t in (0.0, 0.1, 0.2, 0.3, 0.4)])
@@ -49,7 +49,7 @@ def test_command_draws_what_was_chosen(run: Path) -> None:
     assert names == {"shape_0001_soap.png", "shape_0003_soap.png", "sheet_soap.png"}
 
 
-def test_a_load_means_the_nearest_shape_of_each_leg(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_a_load_means_the_nearest_shape_of_each_leg(tmp_path: Path, mesh: Disk) -> None:
     loads = [0.0, 100.0, 200.0, 300.0, 190.0, 90.0]
     with start(tmp_path) as folder:
         for step, load in enumerate(loads):

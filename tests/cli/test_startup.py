@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from eulerplateau.mesh import write_mesh
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 
 HEAVY = {"gmsh", "pyvista", "trimesh", "matplotlib", "meshio"}
 
@@ -29,7 +29,7 @@ def loaded_by(*words: object) -> set[str]:
 
 
 def test_sweep_on_a_stored_mesh_loads_no_mesher_and_no_plotting_library(
-    tmp_path: Path, oval: DiskMesh
+    tmp_path: Path, oval: Disk
 ) -> None:
     write_mesh(oval, tmp_path / "oval.vtp")
     spec = tmp_path / "run.toml"

@@ -12,22 +12,22 @@ from eulerplateau.film.area import AreaFilm, area
 from eulerplateau.film.models import make_film
 from eulerplateau.film.tiling import Tiling, TriangleGeometry
 from eulerplateau.loop.kernels import area_beyond_linear
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes, soap_films, twins
 
 
 @pytest.fixture(scope="module")
-def film(oval: DiskMesh) -> AreaFilm:
+def film(oval: Disk) -> AreaFilm:
     return area(oval)
 
 
 @pytest.fixture(scope="module")
-def tiling(oval: DiskMesh, film: AreaFilm) -> Tiling:
+def tiling(oval: Disk, film: AreaFilm) -> Tiling:
     return film.tiling(oval.triangles)
 
 
 @pytest.fixture(scope="module")
-def x(oval: DiskMesh) -> FloatArray:
+def x(oval: Disk) -> FloatArray:
     """A shape without any symmetry, its triangles far from flat against each other."""
     return shapes.crumpled(oval, 0.01) @ shapes.rotation().T
 
@@ -48,7 +48,7 @@ def twin(tiling: Tiling, x: FloatArray) -> float:
 
 
 def test_energy_is_the_load_times_the_area_of_the_triangles(
-    oval: DiskMesh, film: AreaFilm, tiling: Tiling, x: FloatArray
+    oval: Disk, film: AreaFilm, tiling: Tiling, x: FloatArray
 ) -> None:
     energy = film.energy_gradient(oval.shape.moved(x), 3.0)[0]
     assert energy == pytest.approx(3 * twin(tiling, x), rel=1e-12)
@@ -56,26 +56,26 @@ def test_energy_is_the_load_times_the_area_of_the_triangles(
     assert film.load.tension_per_load == 1.0
 
 
-def test_flat_film_has_the_area_of_its_polygon(oval: DiskMesh, film: AreaFilm) -> None:
+def test_flat_film_has_the_area_of_its_polygon(oval: Disk, film: AreaFilm) -> None:
     """The shoelace formula, whatever the triangles inside."""
     a, b = oval.x[oval.loop, :2].T
     shoelace = 0.5 * np.sum(a * np.roll(b, -1) - np.roll(a, -1) * b)
     assert film.energy_gradient(oval.shape, 1.0)[0] == pytest.approx(shoelace, rel=1e-14)
 
 
-def energy_at(disk: DiskMesh, film: AreaFilm, load: float) -> twins.Field:
+def energy_at(disk: Disk, film: AreaFilm, load: float) -> twins.Field:
     return lambda x: film.energy_gradient(disk.shape.moved(x), load)
 
 
 def test_gradient_leaves_a_remainder_of_second_order(
-    oval: DiskMesh, film: AreaFilm, x: FloatArray
+    oval: Disk, film: AreaFilm, x: FloatArray
 ) -> None:
     slope = twins.taylor_slope(energy_at(oval, film, 2.0), x, direction(x))
     assert slope == pytest.approx(2.0, abs=0.05)
 
 
 def test_hessian_leaves_a_remainder_of_third_order(
-    oval: DiskMesh, film: AreaFilm, tiling: Tiling, x: FloatArray
+    oval: Disk, film: AreaFilm, tiling: Tiling, x: FloatArray
 ) -> None:
     p, area_at = direction(x), energy_at(oval, film, 1.0)
     hessian = soap_films.hessian(tiling, x)
@@ -165,7 +165,7 @@ def test_kernel_for_differences_is_the_area_beyond_its_linear_part(
 
 
 def test_rigid_motions_change_nothing_and_lengths_scale(
-    oval: DiskMesh, film: AreaFilm, x: FloatArray
+    oval: Disk, film: AreaFilm, x: FloatArray
 ) -> None:
     area_at = energy_at(oval, film, 1.0)
     turn, shift = shapes.rotation(), np.array([0.3, -0.2, 0.5])
@@ -182,7 +182,7 @@ def test_rigid_motions_change_nothing_and_lengths_scale(
 
 
 def test_flat_film_pulls_at_nothing_inside_and_lets_its_vertices_slide(
-    oval: DiskMesh, tiling: Tiling
+    oval: Disk, tiling: Tiling
 ) -> None:
     sides = tiling.sides(oval.x)
     inside = tiling.interior
@@ -195,21 +195,21 @@ def test_flat_film_pulls_at_nothing_inside_and_lets_its_vertices_slide(
     assert np.linalg.eigvalsh(across[:, inside][inside].toarray())[0] > 0.01
 
 
-def sides_of(disk: DiskMesh, x: FloatArray) -> TriangleGeometry:
+def sides_of(disk: Disk, x: FloatArray) -> TriangleGeometry:
     return area(disk).tiling(disk.triangles).sides(x)
 
 
-def test_smallest_angle_of_known_triangles(oval: DiskMesh) -> None:
+def test_smallest_angle_of_known_triangles(oval: Disk) -> None:
     lattice = shapes.mesh_of(*shapes.hexagon_points(3))
     assert sides_of(lattice, lattice.x).smallest_angle == pytest.approx(60.0)
-    right = DiskMesh.from_triangles([[0, 0, 0], [1, 0, 0], [1, 1e-3, 0]], [[0, 1, 2]])
+    right = Disk.from_triangles([[0, 0, 0], [1, 0, 0], [1, 1e-3, 0]], [[0, 1, 2]])
     angle = sides_of(right, right.x).smallest_angle
     assert angle == pytest.approx(np.degrees(np.arctan(1e-3)), rel=1e-9)
     assert sides_of(oval, 0 * oval.x).smallest_angle == 0.0
 
 
 def test_triangles_without_area_have_no_normal_and_no_pull(
-    oval: DiskMesh, tiling: Tiling
+    oval: Disk, tiling: Tiling
 ) -> None:
     sides = tiling.sides(oval.x * [1.0, 0.0, 0.0])
     assert not sides.normals.any()

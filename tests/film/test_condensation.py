@@ -8,23 +8,23 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.condensation import Condensation, condense
 from eulerplateau.film.quadratic import QuadraticFilm, dirichlet, springs
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes
 
 
-def wild_loop(mesh: DiskMesh) -> FloatArray:
+def wild_loop(mesh: Disk) -> FloatArray:
     """A loop far from the plane and from its rest lengths."""
     return shapes.crumpled(mesh, 0.1)[mesh.loop]
 
 
 @pytest.fixture(params=["oval", "hexagon", "elongated"])
-def mesh(request: pytest.FixtureRequest) -> DiskMesh:
-    found: DiskMesh = request.getfixturevalue(request.param)
+def mesh(request: pytest.FixtureRequest) -> Disk:
+    found: Disk = request.getfixturevalue(request.param)
     return found
 
 
 @pytest.fixture
-def film(mesh: DiskMesh) -> QuadraticFilm:
+def film(mesh: Disk) -> QuadraticFilm:
     return springs(mesh)
 
 
@@ -34,7 +34,7 @@ def condensed(film: QuadraticFilm) -> Condensation:
 
 
 def test_relaxed_film_is_in_balance_inside_to_rounding(
-    film: QuadraticFilm, condensed: Condensation, mesh: DiskMesh
+    film: QuadraticFilm, condensed: Condensation, mesh: Disk
 ) -> None:
     around = wild_loop(mesh)
     x = condensed.extend(around)
@@ -44,7 +44,7 @@ def test_relaxed_film_is_in_balance_inside_to_rounding(
 
 
 def test_stiffness_is_the_schur_complement_of_the_laplacian(
-    film: QuadraticFilm, condensed: Condensation, mesh: DiskMesh
+    film: QuadraticFilm, condensed: Condensation, mesh: Disk
 ) -> None:
     laplacian = film.laplacian().toarray()
     b, i = mesh.loop, mesh.interior
@@ -54,7 +54,7 @@ def test_stiffness_is_the_schur_complement_of_the_laplacian(
 
 
 def test_stiffness_is_symmetric_semidefinite_with_constants_in_its_kernel(
-    film: QuadraticFilm, condensed: Condensation, mesh: DiskMesh
+    film: QuadraticFilm, condensed: Condensation, mesh: Disk
 ) -> None:
     stiffness = condensed.stiffness
     np.testing.assert_array_equal(stiffness, stiffness.T)
@@ -74,7 +74,7 @@ def test_translations_cost_nothing_next_to_a_sliver_of_1e_8(shape: str) -> None:
 
 
 def test_energy_and_pull_from_the_stiffness_are_those_of_the_whole_relaxed_film(
-    film: QuadraticFilm, condensed: Condensation, mesh: DiskMesh
+    film: QuadraticFilm, condensed: Condensation, mesh: Disk
 ) -> None:
     around = wild_loop(mesh)
     relaxed = mesh.shape.moved(condensed.extend(around))
@@ -87,7 +87,7 @@ def test_energy_and_pull_from_the_stiffness_are_those_of_the_whole_relaxed_film(
 
 
 def test_relaxed_film_has_the_least_energy(
-    film: QuadraticFilm, condensed: Condensation, mesh: DiskMesh
+    film: QuadraticFilm, condensed: Condensation, mesh: Disk
 ) -> None:
     x = condensed.extend(wild_loop(mesh))
     energy = film.energy_gradient(mesh.shape.moved(x), 1.0)[0]
@@ -99,7 +99,7 @@ def test_relaxed_film_has_the_least_energy(
 
 
 def test_pull_of_a_relaxed_film_has_no_total_force_or_torque_which_tests_only_code(
-    film: QuadraticFilm, condensed: Condensation, mesh: DiskMesh
+    film: QuadraticFilm, condensed: Condensation, mesh: Disk
 ) -> None:
     """True on any loop whatever, equilibrium or not: it says nothing about physics."""
     around = wild_loop(mesh)

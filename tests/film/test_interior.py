@@ -18,7 +18,7 @@ from eulerplateau.film.interior import (
 )
 from eulerplateau.film.tiling import Tiling
 from eulerplateau.loop.loop import Loop
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.polygon import (
     polygon_area,
     polygon_gradient,
@@ -28,16 +28,16 @@ from tests.helpers import shapes, twins
 RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1
 
 
-def enneper(rings: int, radius: float = RADIUS, jitter: float = 0.2) -> DiskMesh:
+def enneper(rings: int, radius: float = RADIUS, jitter: float = 0.2) -> Disk:
     points, triangles = shapes.disk_points(rings, jitter)
     return shapes.mesh_of(shapes.enneper(points, radius), triangles)
 
 
-def tiling_of(mesh: DiskMesh) -> Tiling:
+def tiling_of(mesh: Disk) -> Tiling:
     return area(mesh).tiling(mesh.triangles)
 
 
-def relaxed(mesh: DiskMesh) -> FilmAtRest:
+def relaxed(mesh: Disk) -> FilmAtRest:
     return local_film(tiling_of(mesh), mesh.x).relax(mesh.x[mesh.loop])
 
 
@@ -93,7 +93,7 @@ def test_balance_is_the_force_of_a_film_made_at_the_shape() -> None:
     assert np.abs(forces[mesh.interior]).max() < 1e-12
 
 
-def test_film_on_a_flat_loop_is_its_polygon(oval: DiskMesh) -> None:
+def test_film_on_a_flat_loop_is_its_polygon(oval: Disk) -> None:
     local = local_film(tiling_of(oval), shapes.crumpled(oval, 1e-3) * [1.0, 1.0, 0.0])
     x_loop = oval.x[oval.loop] * [1.05, 0.9, 0.0]
     found = local.relax(x_loop)

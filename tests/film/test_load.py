@@ -14,7 +14,7 @@ from matplotlib.text import Text
 
 from eulerplateau.film.load import FILM_LOADS, LOADS, SPRING_LOAD, TENSION
 from eulerplateau.film.models import make_film
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.comparison import runs_figure
 from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.pictures.render.pages import caption
@@ -29,7 +29,7 @@ from tests.runs.test_output import ROW
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(6))
 
 
@@ -56,7 +56,7 @@ def tension_rows() -> list[Row]:
     ]
 
 
-def test_every_film_has_a_load(mesh: DiskMesh) -> None:
+def test_every_film_has_a_load(mesh: Disk) -> None:
     for name, load in FILM_LOADS.items():
         assert make_film(mesh, name).load is load
     assert set(LOADS) == {"kL3_alpha", "sigma_hat"}
@@ -90,7 +90,7 @@ def test_special_points_give_both_loads_with_their_errors(tmp_path: Path) -> Non
 
 
 def test_films_of_different_kinds_are_compared_by_their_tension(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     springs = record(tmp_path / "a", mesh, [row_at(0, 1.0), row_at(1, 2.0)])
     other = record(tmp_path / "b", mesh, tension_rows(), model="dirichlet")
@@ -104,7 +104,7 @@ def test_films_of_different_kinds_are_compared_by_their_tension(
 
 
 def test_table_whose_run_says_no_film_is_shown_over_the_load_of_springs(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     folder = record(tmp_path / "run", mesh, tension_rows(), model="dirichlet")
     for text in ('{"spec": {}}', "[]", "{", '{"spec": {"film": {"model": "rubber"}}}'):
@@ -113,9 +113,7 @@ def test_table_whose_run_says_no_film_is_shown_over_the_load_of_springs(
 
 
 @pytest.mark.parametrize("what", ["diagram", "curvature", "onset"])
-def test_figures_are_over_the_films_own_load(
-    tmp_path: Path, mesh: DiskMesh, what: str
-) -> None:
+def test_figures_are_over_the_films_own_load(tmp_path: Path, mesh: Disk, what: str) -> None:
     springs = record(tmp_path / "a", mesh, [row_at(i, v) for i, v in enumerate(loads())])
     other = record(tmp_path / "b", mesh, tension_rows(), model="dirichlet")
     for folder, load in ((springs, SPRING_LOAD), (other, TENSION)):
@@ -128,9 +126,7 @@ def test_figures_are_over_the_films_own_load(
         assert what == "onset" or max(reach) > max(loads()) - 1
 
 
-def test_captions_and_galleries_name_the_films_own_load(
-    tmp_path: Path, mesh: DiskMesh
-) -> None:
+def test_captions_and_galleries_name_the_films_own_load(tmp_path: Path, mesh: Disk) -> None:
     rows = tension_rows()
     assert TENSION.tex in caption(rows[0])
     assert SPRING_LOAD.tex in caption(ROW)
@@ -141,7 +137,7 @@ def test_captions_and_galleries_name_the_films_own_load(
 
 
 def test_branch_of_a_film_with_a_tension_is_drawn_over_it(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     rows = [replace(row, sigma_hat=7 * row.kL3_alpha) for row in pitchfork()]
     folder = record(tmp_path / "run", mesh, rows, model="area")

@@ -22,18 +22,18 @@ from eulerplateau.film.interior import (
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
 from eulerplateau.film.quadratic import dirichlet
 from eulerplateau.film.tiling import Tiling
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers.equilibrium import Status
 from tests.helpers import shapes, soap_films
 
 RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1
 
 
-def tiling_of(mesh: DiskMesh) -> Tiling:
+def tiling_of(mesh: Disk) -> Tiling:
     return area(mesh).tiling(mesh.triangles)
 
 
-def enneper(rings: int, jitter: float = 0.2) -> tuple[Tiling, FloatArray, DiskMesh]:
+def enneper(rings: int, jitter: float = 0.2) -> tuple[Tiling, FloatArray, Disk]:
     points, triangles = shapes.disk_points(rings, jitter)
     mesh = shapes.mesh_of(shapes.enneper(points, RADIUS), triangles)
     return tiling_of(mesh), mesh.x, mesh
@@ -109,7 +109,7 @@ def test_waist_narrower_than_the_loops_edges_has_none() -> None:
     assert find_minimal_surface(tiling_of(mesh), x) is None
 
 
-def test_vertices_of_a_flat_film_are_left_where_they_are(oval: DiskMesh) -> None:
+def test_vertices_of_a_flat_film_are_left_where_they_are(oval: Disk) -> None:
     turned = oval.shape.moved(oval.x @ shapes.rotation().T)
     assert is_flat(tiling_of(oval), turned.x)
     for film in (area(oval), dirichlet(oval)):

@@ -17,18 +17,18 @@ from eulerplateau.film.interior import (
     LocalFilm,
 )
 from eulerplateau.loop import Loop, free_motions, inextensible
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes, soap_films, twins
 
 RADIUS = 0.8  # of Enneper's surface: stable as a film up to 1
 
 
-def enneper(rings: int, jitter: float) -> DiskMesh:
+def enneper(rings: int, jitter: float) -> Disk:
     points, triangles = shapes.disk_points(rings, jitter)
     return shapes.mesh_of(shapes.enneper(points, RADIUS), triangles)
 
 
-def made_at(mesh: DiskMesh, x: FloatArray) -> LocalFilm:
+def made_at(mesh: Disk, x: FloatArray) -> LocalFilm:
     return local_film(area(mesh).tiling(mesh.triangles), x)
 
 
@@ -84,7 +84,7 @@ def test_condensed_hessian_has_the_index_of_the_whole(
     assert (indices[0] > 0) == (load > 1000)
 
 
-def test_hessian_of_a_flat_film_leaves_a_remainder_of_third_order(oval: DiskMesh) -> None:
+def test_hessian_of_a_flat_film_leaves_a_remainder_of_third_order(oval: Disk) -> None:
     local = made_at(oval, oval.x)
     x_loop = oval.x[oval.loop]
     hessian = local.relax(x_loop).hessian

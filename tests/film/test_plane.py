@@ -14,7 +14,7 @@ from eulerplateau.film.plane import (
 )
 from eulerplateau.loop import Loop, project_lengths
 from eulerplateau.mesh.curvature import loop_frame
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.measures import Measurer
 from eulerplateau.mesh.polygon import (
     polygon_area,
@@ -29,13 +29,13 @@ from tests.helpers.equilibria import distance_up_to_motion, energy_in_plane
 EDGES = (72, 108, 168, 240)
 
 
-def turned(mesh: DiskMesh) -> DiskMesh:
+def turned(mesh: Disk) -> Disk:
     """The mesh in a plane of no special direction, its film seen from below."""
     flip = np.diag([1.0, -1.0, -1.0]) @ shapes.rotation()
-    return DiskMesh.from_triangles(mesh.x @ flip, mesh.triangles)
+    return Disk.from_triangles(mesh.x @ flip, mesh.triangles)
 
 
-def test_energy_is_the_load_times_the_area_of_the_polygon(oval: DiskMesh) -> None:
+def test_energy_is_the_load_times_the_area_of_the_polygon(oval: Disk) -> None:
     for mesh in (oval, turned(oval)):
         film = plane_film(mesh)
         exact = film.soap.energy_gradient(mesh.shape, 3.0)
@@ -45,7 +45,7 @@ def test_energy_is_the_load_times_the_area_of_the_polygon(oval: DiskMesh) -> Non
         assert not gradient[mesh.interior].any()
 
 
-def test_gradient_of_a_polygon_is_exact_and_its_area_quadratic(oval: DiskMesh) -> None:
+def test_gradient_of_a_polygon_is_exact_and_its_area_quadratic(oval: Disk) -> None:
     film = plane_film(oval)
     rng = np.random.default_rng(8)
     x, p = shapes.crumpled(oval, 0.01), rng.standard_normal(oval.x.shape)
@@ -64,7 +64,7 @@ def test_gradient_of_a_polygon_is_exact_and_its_area_quadratic(oval: DiskMesh) -
     assert change == pytest.approx(polygon_area(square + step) - 2.0, rel=1e-13)
 
 
-def test_hessian_of_the_energy_in_the_plane_leaves_nothing(oval: DiskMesh) -> None:
+def test_hessian_of_the_energy_in_the_plane_leaves_nothing(oval: Disk) -> None:
     """E + lambda . c is quadratic where lambda is held, once lengths are forgotten."""
     film = plane_film(oval)
     energy = plane_film(oval).of_loop(oval.shape).energy(Loop(oval.rest_lengths), 700.0)
@@ -79,8 +79,8 @@ def test_hessian_of_the_energy_in_the_plane_leaves_nothing(oval: DiskMesh) -> No
     assert energy.change(x, step) == pytest.approx(change, rel=1e-12)
 
 
-def test_mesh_that_is_not_flat_has_no_plane_to_be_kept_in(oval: DiskMesh) -> None:
-    bent = DiskMesh.from_triangles(
+def test_mesh_that_is_not_flat_has_no_plane_to_be_kept_in(oval: Disk) -> None:
+    bent = Disk.from_triangles(
         oval.x + 1e-6 * np.outer(oval.x[:, 0] ** 2, [0, 0, 1]), oval.triangles
     )
     with pytest.raises(MeshError) as caught:
@@ -171,7 +171,7 @@ def test_three_lobed_saddle_is_reached_from_a_rough_guess() -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_start_that_lies_face_down_is_turned_over(oval: DiskMesh, solver: str) -> None:
+def test_start_that_lies_face_down_is_turned_over(oval: Disk, solver: str) -> None:
     """Its loop runs clockwise, round a negative area that more tension would enlarge."""
     problem = Problem(oval, "area", in_plane=True)
     down, up = (
@@ -183,7 +183,7 @@ def test_start_that_lies_face_down_is_turned_over(oval: DiskMesh, solver: str) -
     assert down.film_energy > 0
 
 
-def test_film_turned_inside_out_is_no_equilibrium(oval: DiskMesh) -> None:
+def test_film_turned_inside_out_is_no_equilibrium(oval: Disk) -> None:
     problem = Problem(oval, "area", in_plane=True)
     found = problem.equilibrium(
         problem.shape(oval.x * [1.0, -1.0, 1.0]),
@@ -194,7 +194,7 @@ def test_film_turned_inside_out_is_no_equilibrium(oval: DiskMesh) -> None:
     assert problem.classified(found).status is Status.PINCHED
 
 
-def test_film_stays_in_its_plane_and_in_good_triangles(oval: DiskMesh) -> None:
+def test_film_stays_in_its_plane_and_in_good_triangles(oval: Disk) -> None:
     mesh = turned(oval)
     problem = Problem(mesh, "area", in_plane=True)
     film = problem.film

@@ -10,11 +10,11 @@ from eulerplateau.errors import MeshError
 from eulerplateau.film.load import FILM_LOADS, SPRING_TENSION
 from eulerplateau.film.models import make_film
 from eulerplateau.film.quadratic import QuadraticFilm, dirichlet, springs
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes, twins
 
 
-def test_springs_are_one_on_every_edge_that_is_not_on_the_loop(oval: DiskMesh) -> None:
+def test_springs_are_one_on_every_edge_that_is_not_on_the_loop(oval: Disk) -> None:
     film = springs(oval)
     assert len(film.edges) == len(oval.edges) - oval.n_b
     assert (film.weights == 1).all()
@@ -26,7 +26,7 @@ def test_springs_are_one_on_every_edge_that_is_not_on_the_loop(oval: DiskMesh) -
     np.testing.assert_array_equal(made.weights, film.weights)
 
 
-def test_laplacian_gives_the_energy_of_the_twin(oval: DiskMesh) -> None:
+def test_laplacian_gives_the_energy_of_the_twin(oval: Disk) -> None:
     x = shapes.crumpled(oval, 0.05)
     laplacian = springs(oval).laplacian()
     assert isinstance(laplacian, csc_array)
@@ -35,7 +35,7 @@ def test_laplacian_gives_the_energy_of_the_twin(oval: DiskMesh) -> None:
 
 
 def test_laplacian_is_semidefinite_with_constants_and_nothing_else_in_its_kernel(
-    oval: DiskMesh,
+    oval: Disk,
 ) -> None:
     laplacian = springs(oval).laplacian().toarray()
     np.testing.assert_array_equal(laplacian, laplacian.T)
@@ -58,13 +58,13 @@ def test_springs_are_the_dirichlet_film_of_an_equilateral_lattice_with_2_sqrt_3_
     np.testing.assert_allclose(difference, 0, atol=1e-12)
 
 
-def test_every_film_has_its_effective_tension_per_load(oval: DiskMesh) -> None:
+def test_every_film_has_its_effective_tension_per_load(oval: Disk) -> None:
     for name, load in FILM_LOADS.items():
         film = make_film(oval, name)
         assert film.load.tension_per_load == load.tension_per_load
 
 
-def test_dirichlet_is_half_the_integral_of_the_gradient_squared(oval: DiskMesh) -> None:
+def test_dirichlet_is_half_the_integral_of_the_gradient_squared(oval: Disk) -> None:
     """For a linear map x = A r it is |A|^2 times half the rest area, for the identity the
     area itself. Loop edges are part of it."""
     laplacian = dirichlet(oval).laplacian()
@@ -78,7 +78,7 @@ def test_dirichlet_is_half_the_integral_of_the_gradient_squared(oval: DiskMesh) 
 
 
 def test_dirichlet_is_the_energy_of_every_triangle_gradient_by_gradient(
-    oval: DiskMesh,
+    oval: Disk,
 ) -> None:
     """Against gradients of x in each rest triangle, by solving for them."""
     x, energy = shapes.crumpled(oval, 0.05), 0.0

@@ -17,14 +17,14 @@ from eulerplateau.film.repair import (
     mend_triangles,
 )
 from eulerplateau.film.tiling import LIMITS, Tiling
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import (
     neighbours,
 )
 from tests.helpers import shapes
 
 
-def tiling_of(mesh: DiskMesh) -> Tiling:
+def tiling_of(mesh: Disk) -> Tiling:
     return area(mesh).tiling(mesh.triangles)
 
 
@@ -46,7 +46,7 @@ def triangle_set(triangles: IntArray) -> set[frozenset[int]]:
 
 
 def assert_same_disk(before: Tiling, after: Tiling, x: FloatArray) -> None:
-    mesh = DiskMesh.from_triangles(x, after.triangles)
+    mesh = Disk.from_triangles(x, after.triangles)
     assert len(after.triangles) == len(before.triangles)
     np.testing.assert_array_equal(np.sort(mesh.loop), np.sort(before.loop))
     start = int(np.flatnonzero(mesh.loop == before.loop[0])[0])

@@ -14,8 +14,8 @@ from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
 from eulerplateau.branches.point import BranchPoint, StepControl, first_point
 from eulerplateau.branches.special import SpecialPoint
 from eulerplateau.loop.lengths import close_with_lengths
-from eulerplateau.mesh import load_mesh
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh import read_disk
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.mesh.waist import waist_path, waist_twist
 from eulerplateau.solvers import Problem, solve
@@ -30,7 +30,7 @@ CONTROL = StepControl(window=(1.0, 3000.0), unit=3000.0)
 class Diagram:
     """What an exploration visited, with a few questions that tests ask of it."""
 
-    mesh: DiskMesh
+    mesh: Disk
     problem: Problem
     visits: tuple[DiagramPoint, ...]
 
@@ -63,7 +63,7 @@ class Diagram:
 @cache
 def elongated() -> Diagram:
     """The diagram of runs/elongated.toml, a few seconds' work."""
-    mesh = load_mesh(ROOT / "meshes" / "elongated.vtp")
+    mesh = read_disk(ROOT / "meshes" / "elongated.vtp")
     problem = Problem(mesh)
     start = stable_point(problem, 1.0, CONTROL)
     return Diagram(mesh, problem, tuple(explore_from(start, CONTROL, Limits())))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from scripts.studies.stability import cases
-from scripts.studies.stability.cases import Disk, Outcome
+from scripts.studies.stability.cases import Outcome
 from tests.helpers import shapes
 
 EPS = float(np.finfo(np.float64).eps)

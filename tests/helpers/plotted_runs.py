@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.folder import RunFolder
 from eulerplateau.runs.table import BranchRow, Row
 from tests.helpers.shapes import eight
@@ -19,7 +19,7 @@ from tests.runs.test_output import ROW
 ONSET = 670.0
 
 
-def film(mesh: DiskMesh, t: float) -> FloatArray:
+def film(mesh: Disk, t: float) -> FloatArray:
     """The film of eq. eight with a loop of unit length."""
     x = eight(mesh.x[:, :2] / np.hypot(*mesh.x.T[:2]).max(), t)
     loop = x[mesh.loop]
@@ -51,7 +51,7 @@ def loads(onset: float = ONSET) -> list[float]:
 
 def record(
     path: Path,
-    mesh: DiskMesh,
+    mesh: Disk,
     rows: Sequence[Row],
     *,
     vertices: int = 474,

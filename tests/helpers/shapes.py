@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 
 
 def hexagon_points(rings: int) -> tuple[FloatArray, IntArray]:
@@ -97,14 +97,12 @@ def cap(points: FloatArray, opening: float) -> FloatArray:
     return np.column_stack([spread[:, None] * points, np.cos(polar)])
 
 
-def mesh_of(points: FloatArray, triangles: IntArray) -> DiskMesh:
-    """DiskMesh of points in the plane (n, 2) or in space (n, 3)."""
-    return DiskMesh.from_triangles(
-        flat(points) if points.shape[1] == 2 else points, triangles
-    )
+def mesh_of(points: FloatArray, triangles: IntArray) -> Disk:
+    """Disk of points in the plane (n, 2) or in space (n, 3)."""
+    return Disk.from_triangles(flat(points) if points.shape[1] == 2 else points, triangles)
 
 
-def crumpled(mesh: DiskMesh, size: float) -> FloatArray:
+def crumpled(mesh: Disk, size: float) -> FloatArray:
     """Rest positions of `mesh` plus seeded normal noise of standard deviation `size`."""
     return mesh.x + size * np.random.default_rng(5).standard_normal(mesh.x.shape)
 

@@ -13,7 +13,7 @@ from eulerplateau.branches.continuation import follow
 from eulerplateau.branches.point import BranchPoint, Direction, StepControl, correct
 from eulerplateau.branches.special import SpecialPoint, branches_from, special_points
 from eulerplateau.film.tiling import Tiling
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.solvers import Problem, solve
 from tests.helpers import shapes
@@ -25,7 +25,7 @@ CONTROL = StepControl(window=(1000.0, 4000.0), unit=2000.0)
 _TIMES = 6
 
 
-def irregular_disk(rings: int, jitter: float = 0.15) -> DiskMesh:
+def irregular_disk(rings: int, jitter: float = 0.15) -> Disk:
     """A disk without symmetry inside its loop of even edges."""
     points, triangles = shapes.disk_points(rings, jitter)
     points[-6 * rings :] = shapes.disk_points(rings)[0][-6 * rings :]
@@ -49,7 +49,7 @@ def turn(angle: float) -> FloatArray:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def two_lobed(mesh: DiskMesh, load: float, angle: float = 0.0) -> BranchPoint:
+def two_lobed(mesh: Disk, load: float, angle: float = 0.0) -> BranchPoint:
     """The planar two-lobed film, its long axis turned by `angle` against the mesh."""
     problem = Problem(mesh, "area")
     oval = turn(angle) @ np.diag([1.25, 0.8, 1.0]) @ turn(angle).T
@@ -83,7 +83,7 @@ def twisted_from_two_lobed(special: SpecialPoint, load: float) -> BranchPoint:
     return _made_anew(point, point.x, load, still)
 
 
-def twisted_disk(mesh: DiskMesh, size: float, angle: float = 0.0) -> BranchPoint:
+def twisted_disk(mesh: Disk, size: float, angle: float = 0.0) -> BranchPoint:
     """The point of the branch that leaves the disk at 96 pi^3, twisted by so much.
 
     `size` is the r.m.s. displacement along cos 2 (phi - angle), in units of L.
@@ -115,6 +115,6 @@ def _made_anew(
     return point
 
 
-def mesh_of(point: BranchPoint, mesh: DiskMesh) -> DiskMesh:
+def mesh_of(point: BranchPoint, mesh: Disk) -> Disk:
     """The mesh with the triangles that the film of a point has come to."""
     return replace(mesh, triangles=shape(point).triangles)

@@ -10,12 +10,12 @@ from collections.abc import Callable
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 
 Field = Callable[[FloatArray], tuple[float, FloatArray]]
 
 
-def film_energy(mesh: DiskMesh, x: FloatArray, load: float) -> float:
+def film_energy(mesh: Disk, x: FloatArray, load: float) -> float:
     """k sum |e|^2 over the edges that are not on the loop."""
     pairs = {tuple(sorted(pair)) for t in mesh.triangles.tolist() for pair in _sides(t)}
     pairs -= {tuple(sorted(pair)) for pair in _sides(mesh.loop.tolist())}
@@ -23,7 +23,7 @@ def film_energy(mesh: DiskMesh, x: FloatArray, load: float) -> float:
     return float(load * ((x[i] - x[j]) ** 2).sum())
 
 
-def bending_energy(mesh: DiskMesh, x: FloatArray) -> float:
+def bending_energy(mesh: Disk, x: FloatArray) -> float:
     """sum_v <s_v> kappa_v^2 with kappa_v = |t_v - t_{v-1}| / <s_v>, t_v = e_v / s_v."""
     s = mesh.rest_lengths
     mean = (s + np.roll(s, 1)) / 2
@@ -32,14 +32,14 @@ def bending_energy(mesh: DiskMesh, x: FloatArray) -> float:
     return float((mean * kappa**2).sum())
 
 
-def constraint(mesh: DiskMesh, x: FloatArray) -> FloatArray:
+def constraint(mesh: Disk, x: FloatArray) -> FloatArray:
     """c_v = (|e_v|^2 - s_v^2) / (2 s_v)."""
     s = mesh.rest_lengths
     return ((_chords(mesh, x) ** 2).sum(axis=1) - s**2) / (2 * s)
 
 
 def lagrangian(
-    mesh: DiskMesh, x: FloatArray, load: float, tensions: FloatArray, penalty: float
+    mesh: Disk, x: FloatArray, load: float, tensions: FloatArray, penalty: float
 ) -> float:
     """Film, bending, sum_v lambda_v c_v and sum_v mu c_v^2 / (2 s_v)."""
     c = constraint(mesh, x)
@@ -58,7 +58,7 @@ def taylor_slope(field: Field, x: FloatArray, direction: FloatArray) -> float:
     return float(np.polyfit(np.log(steps), np.log(np.abs(leftover)), 1)[0])
 
 
-def _chords(mesh: DiskMesh, x: FloatArray) -> FloatArray:
+def _chords(mesh: Disk, x: FloatArray) -> FloatArray:
     around = x[mesh.loop]
     return np.roll(around, -1, axis=0) - around
 

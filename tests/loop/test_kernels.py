@@ -9,7 +9,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import kernels
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers.problem import Problem
 from tests.helpers import shapes, twins
 
@@ -18,12 +18,12 @@ PENALTY = 3e3
 RNG = np.random.default_rng(11)
 
 
-def film(mesh: DiskMesh) -> twins.Field:
+def film(mesh: Disk) -> twins.Field:
     springs = Problem(mesh).film
     return lambda x: springs.energy_gradient(mesh.shape.moved(x), LOAD)
 
 
-def bending(mesh: DiskMesh) -> twins.Field:
+def bending(mesh: Disk) -> twins.Field:
     problem = Problem(mesh)
     return lambda x: problem.bending_energy(mesh.shape.moved(x))
 
@@ -58,7 +58,7 @@ def augmented(problem: Problem, base: FloatArray, lam: FloatArray) -> twins.Fiel
     return difference
 
 
-def test_film_energy_is_that_of_the_numpy_twin(oval: DiskMesh, hexagon: DiskMesh) -> None:
+def test_film_energy_is_that_of_the_numpy_twin(oval: Disk, hexagon: Disk) -> None:
     for mesh in (oval, hexagon):
         x = shapes.crumpled(mesh, 0.05)
         assert film(mesh)(x)[0] == pytest.approx(
@@ -66,9 +66,7 @@ def test_film_energy_is_that_of_the_numpy_twin(oval: DiskMesh, hexagon: DiskMesh
         )
 
 
-def test_bending_energy_is_that_of_the_numpy_twin(
-    oval: DiskMesh, hexagon: DiskMesh
-) -> None:
+def test_bending_energy_is_that_of_the_numpy_twin(oval: Disk, hexagon: Disk) -> None:
     for mesh in (oval, hexagon):
         x = shapes.crumpled(mesh, 0.05)
         assert bending(mesh)(x)[0] == pytest.approx(
@@ -76,7 +74,7 @@ def test_bending_energy_is_that_of_the_numpy_twin(
         )
 
 
-def test_augmented_difference_is_the_difference_of_two_twins(oval: DiskMesh) -> None:
+def test_augmented_difference_is_the_difference_of_two_twins(oval: Disk) -> None:
     base = shapes.crumpled(oval, 0.01)
     lam = 50 * RNG.standard_normal(oval.n_b)
     field = augmented(Problem(oval), base, lam)
@@ -88,7 +86,7 @@ def test_augmented_difference_is_the_difference_of_two_twins(oval: DiskMesh) -> 
 
 
 def test_augmented_difference_keeps_its_digits_for_displacements_of_1e_9(
-    oval: DiskMesh,
+    oval: Disk,
 ) -> None:
     """It is a polynomial of u: what it is at 1e-9 follows from what it is at 1e-5."""
     base = shapes.crumpled(oval, 0.01)
@@ -109,7 +107,7 @@ def test_augmented_difference_keeps_its_digits_for_displacements_of_1e_9(
 
 
 @pytest.mark.parametrize("name", ["film", "bending", "augmented"])
-def test_gradient_has_taylor_slope_2(oval: DiskMesh, name: str) -> None:
+def test_gradient_has_taylor_slope_2(oval: Disk, name: str) -> None:
     x = shapes.crumpled(oval, 0.02)
     fields = {
         "film": film(oval),
@@ -124,7 +122,7 @@ def test_gradient_has_taylor_slope_2(oval: DiskMesh, name: str) -> None:
 
 @pytest.mark.parametrize("energy", [film, bending])
 def test_quadratic_energy_has_no_remainder_beyond_second_order(
-    oval: DiskMesh, energy: Callable[[DiskMesh], twins.Field]
+    oval: Disk, energy: Callable[[Disk], twins.Field]
 ) -> None:
     """E(x + p) - E(x) - g.p = E(p), exactly: the Hessian of a quadratic energy."""
     field = energy(oval)
@@ -135,7 +133,7 @@ def test_quadratic_energy_has_no_remainder_beyond_second_order(
 
 @pytest.mark.parametrize("energy", [film, bending])
 def test_gradient_is_added_to_what_is_there(
-    oval: DiskMesh, energy: Callable[[DiskMesh], twins.Field]
+    oval: Disk, energy: Callable[[Disk], twins.Field]
 ) -> None:
     problem = Problem(oval)
     x = shapes.crumpled(oval, 0.02)
@@ -152,7 +150,7 @@ def test_gradient_is_added_to_what_is_there(
 
 @pytest.mark.parametrize("energy", [film, bending])
 def test_rigid_motions_change_the_energy_by_less_than_1e_12_of_itself(
-    elongated: DiskMesh, energy: Callable[[DiskMesh], twins.Field]
+    elongated: Disk, energy: Callable[[Disk], twins.Field]
 ) -> None:
     field = energy(elongated)
     for x in (elongated.x, shapes.crumpled(elongated, 0.02)):
@@ -164,7 +162,7 @@ def test_rigid_motions_change_the_energy_by_less_than_1e_12_of_itself(
 
 
 def test_film_scales_as_length_squared_and_bending_as_one_over_length(
-    oval: DiskMesh,
+    oval: Disk,
 ) -> None:
     x = shapes.crumpled(oval, 0.02)
     scale = 3.7

@@ -8,19 +8,19 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.lengths import close_with_lengths, jacobian, project_lengths
 from eulerplateau.loop.loop import Loop
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers import equilibria, shapes
 
 RNG = np.random.default_rng(6)
 
 
 @pytest.fixture
-def loop(oval: DiskMesh) -> Loop:
+def loop(oval: Disk) -> Loop:
     return Loop(oval.rest_lengths)
 
 
 @pytest.fixture
-def bent(oval: DiskMesh, loop: Loop) -> FloatArray:
+def bent(oval: Disk, loop: Loop) -> FloatArray:
     """A loop in space that keeps its lengths."""
     found = project_lengths(loop, shapes.crumpled(oval, 0.01)[oval.loop])
     assert found is not None
@@ -41,7 +41,7 @@ def test_jacobian_is_the_derivative_of_the_constraint(loop: Loop, bent: FloatArr
     np.testing.assert_allclose(lam @ rows, force.ravel(), atol=1e-12)
 
 
-def test_projection_meets_the_lengths_to_rounding(oval: DiskMesh, loop: Loop) -> None:
+def test_projection_meets_the_lengths_to_rounding(oval: Disk, loop: Loop) -> None:
     for size in (1e-6, 1e-3, 1e-2):
         found = project_lengths(loop, shapes.crumpled(oval, size)[oval.loop])
         assert found is not None

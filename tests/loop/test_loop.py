@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from eulerplateau.loop.loop import Loop
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes, twins
 
 RNG = np.random.default_rng(2)
 
 
-def test_bending_matrix_gives_the_bending_energy_of_the_twin(oval: DiskMesh) -> None:
+def test_bending_matrix_gives_the_bending_energy_of_the_twin(oval: Disk) -> None:
     x = shapes.crumpled(oval, 0.05)
     around = x[oval.loop]
     matrix = Loop(oval.rest_lengths).bending_matrix
@@ -21,7 +21,7 @@ def test_bending_matrix_gives_the_bending_energy_of_the_twin(oval: DiskMesh) -> 
 
 
 def test_bending_matrix_is_semidefinite_and_bends_nothing_by_translation(
-    oval: DiskMesh,
+    oval: Disk,
 ) -> None:
     matrix = Loop(oval.rest_lengths).bending_matrix
     values = np.linalg.eigvalsh(matrix)
@@ -31,7 +31,7 @@ def test_bending_matrix_is_semidefinite_and_bends_nothing_by_translation(
     assert values[1] > 0
 
 
-def test_constraint_is_that_of_the_twin_and_vanishes_at_rest(oval: DiskMesh) -> None:
+def test_constraint_is_that_of_the_twin_and_vanishes_at_rest(oval: Disk) -> None:
     loop = Loop(oval.rest_lengths)
     x = shapes.crumpled(oval, 0.02)
     np.testing.assert_allclose(
@@ -52,7 +52,7 @@ def test_constraint_resolves_a_length_error_of_1e_12() -> None:
 
 
 def test_tension_force_is_the_gradient_of_lambda_times_constraint_with_taylor_slope_2(
-    oval: DiskMesh,
+    oval: Disk,
 ) -> None:
     loop, lam = Loop(oval.rest_lengths), RNG.standard_normal(oval.n_b)
     x = shapes.crumpled(oval, 0.02)[oval.loop]
@@ -66,7 +66,7 @@ def test_tension_force_is_the_gradient_of_lambda_times_constraint_with_taylor_sl
 
 
 def test_constraint_is_invariant_under_rigid_motions_and_scales_as_a_length(
-    oval: DiskMesh,
+    oval: Disk,
 ) -> None:
     loop = Loop(oval.rest_lengths)
     x = shapes.crumpled(oval, 0.02)[oval.loop]

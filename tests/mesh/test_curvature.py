@@ -13,7 +13,7 @@ from eulerplateau.mesh.curvature import (
     loop_frame,
     total_gauss_curvature,
 )
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import (
     area_vectors,
     unit,
@@ -24,12 +24,12 @@ RINGS = (8, 12, 16, 24, 32, 48)
 SIZES = [1.0 / n for n in RINGS]
 
 
-def enneper_mesh(rings: int, radius: float, jitter: float) -> DiskMesh:
+def enneper_mesh(rings: int, radius: float, jitter: float) -> Disk:
     points, triangles = shapes.disk_points(rings, jitter)
     return shapes.mesh_of(shapes.enneper(points, radius), triangles)
 
 
-def saddle() -> DiskMesh:
+def saddle() -> Disk:
     return enneper_mesh(10, 0.8, 0.2)
 
 
@@ -230,7 +230,7 @@ def test_scaling_lengths_by_a_divides_curvatures_by_a_and_keeps_angles() -> None
 
 def test_turning_the_film_over_flips_kappa_n_and_keeps_kappa_g() -> None:
     mesh = saddle()
-    over = DiskMesh.from_triangles(mesh.x, mesh.triangles[:, ::-1])
+    over = Disk.from_triangles(mesh.x, mesh.triangles[:, ::-1])
     here, there = loop_frame(mesh, mesh.x), loop_frame(over, over.x)
     place, other = np.argsort(mesh.loop), np.argsort(over.loop)
     np.testing.assert_allclose(there.kappa_n[other], -here.kappa_n[place], atol=1e-9)

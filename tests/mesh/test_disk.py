@@ -1,11 +1,11 @@
-"""DiskMesh: what it refuses, naming the culprit, and what it leaves unchanged."""
+"""Disk: what it refuses, naming the culprit, and what it leaves unchanged."""
 
 import numpy as np
 import pytest
 
 from eulerplateau.errors import MeshError
 from eulerplateau.mesh.disk import (
-    DiskMesh,
+    Disk,
 )
 from eulerplateau.mesh.triangles import (
     directed_edges,
@@ -72,7 +72,7 @@ BAD_MESHES = {
 def test_a_bad_mesh_is_refused_and_its_culprit_named(case):
     points, triangles, kind, index = BAD_MESHES[case]
     with pytest.raises(MeshError) as caught:
-        DiskMesh.from_triangles(points, triangles)
+        Disk.from_triangles(points, triangles)
     assert (caught.value.kind, caught.value.index) == (kind, index)
     assert caught.value.exit_code == 3
 
@@ -88,7 +88,7 @@ def test_a_boundary_that_passes_a_vertex_twice_is_refused():
         triangles += [[k, k + 1, k + 5], [k + 1, k + 6, k + 5]]
     triangles += [[5, 0, 10]]
     with pytest.raises(MeshError) as caught:
-        DiskMesh.from_triangles(points, triangles)
+        Disk.from_triangles(points, triangles)
     assert (caught.value.kind, caught.value.index) == ("vertex", 0)
 
 
@@ -103,14 +103,14 @@ def test_a_torus_with_a_hole_is_refused():
     first = np.stack([a, b, c], axis=-1).reshape(-1, 3)
     second = np.stack([a, c, d], axis=-1).reshape(-1, 3)
     with pytest.raises(MeshError) as caught:
-        DiskMesh.from_triangles(points, np.concatenate([first, second])[1:])
+        Disk.from_triangles(points, np.concatenate([first, second])[1:])
     assert (caught.value.kind, caught.value.index) == ("mesh", None)
 
 
 def test_the_loop_has_the_film_on_its_left():
-    mesh = DiskMesh.from_triangles(SQUARE, FAN)
+    mesh = Disk.from_triangles(SQUARE, FAN)
     assert mesh.loop.tolist() == [0, 1, 2, 3]
-    turned = DiskMesh.from_triangles(SQUARE, FAN[:, ::-1])
+    turned = Disk.from_triangles(SQUARE, FAN[:, ::-1])
     assert turned.loop.tolist() == [0, 3, 2, 1]
     border = np.stack([mesh.loop, np.roll(mesh.loop, -1)], axis=1)
     assert {tuple(e) for e in border} <= {tuple(e) for e in directed_edges(FAN)}
@@ -118,7 +118,7 @@ def test_the_loop_has_the_film_on_its_left():
 
 def test_edges_are_loop_and_interior_once_each():
     plane, triangles = hexagon_points(4)
-    mesh = DiskMesh.from_triangles(np.pad(plane, ((0, 0), (0, 1))), triangles)
+    mesh = Disk.from_triangles(np.pad(plane, ((0, 0), (0, 1))), triangles)
     assert mesh.n_v - len(mesh.edges) + len(mesh.triangles) == 1
     assert len(mesh.edges) == len(np.unique(mesh.edges, axis=0))
     assert len(mesh.edges) - len(mesh.interior_edges) == mesh.n_b == 24
@@ -128,7 +128,7 @@ def test_edges_are_loop_and_interior_once_each():
 
 
 def test_lengths_are_scaled_by_the_loop_and_centred_on_it():
-    mesh = DiskMesh.from_triangles(SQUARE + np.array([10, -7, 3]), FAN)
+    mesh = Disk.from_triangles(SQUARE + np.array([10, -7, 3]), FAN)
     assert mesh.length == pytest.approx(4, rel=1e-15)
     np.testing.assert_allclose(mesh.rest_lengths, 0.25, rtol=1e-15)
     np.testing.assert_allclose(mesh.x[mesh.loop].mean(axis=0), 0, atol=1e-16)
@@ -137,8 +137,8 @@ def test_lengths_are_scaled_by_the_loop_and_centred_on_it():
 @pytest.mark.parametrize("power", [-900, -30, 30, 900])
 def test_a_power_of_two_of_the_unit_changes_no_bit(power):
     points = moved(4, [0.3, 0.6, 0.2])
-    mesh = DiskMesh.from_triangles(points, FAN)
-    scaled = DiskMesh.from_triangles(np.ldexp(points, power), FAN)
+    mesh = Disk.from_triangles(points, FAN)
+    scaled = Disk.from_triangles(np.ldexp(points, power), FAN)
     assert scaled.digest == mesh.digest
     assert scaled.length == np.ldexp(mesh.length, power)
 
@@ -146,27 +146,27 @@ def test_a_power_of_two_of_the_unit_changes_no_bit(power):
 @pytest.mark.parametrize("unit", [1e-9, 1e9])
 def test_the_unit_of_length_does_not_matter(unit):
     points = moved(4, [0.3, 0.6, 0.2])
-    mesh = DiskMesh.from_triangles(points, FAN)
-    scaled = DiskMesh.from_triangles(points * unit, FAN)
+    mesh = Disk.from_triangles(points, FAN)
+    scaled = Disk.from_triangles(points * unit, FAN)
     np.testing.assert_allclose(scaled.x, mesh.x, rtol=0, atol=1e-15)
     assert scaled.length == pytest.approx(mesh.length * unit, rel=1e-14)
 
 
 def test_slivers_are_no_error():
-    DiskMesh.from_triangles(moved(4, [0.5, 1e-8, 0]), FAN)
+    Disk.from_triangles(moved(4, [0.5, 1e-8, 0]), FAN)
 
 
 def test_the_digest_tells_meshes_apart():
     digests = {
-        DiskMesh.from_triangles(SQUARE, FAN).digest,
-        DiskMesh.from_triangles(moved(4, [0.5, 0.6, 0]), FAN).digest,
-        DiskMesh.from_triangles(SQUARE, np.roll(FAN, 1, axis=0)).digest,
+        Disk.from_triangles(SQUARE, FAN).digest,
+        Disk.from_triangles(moved(4, [0.5, 0.6, 0]), FAN).digest,
+        Disk.from_triangles(SQUARE, np.roll(FAN, 1, axis=0)).digest,
     }
     assert len(digests) == 3
 
 
 def test_the_mesh_keeps_its_own_triangles():
     triangles = FAN.copy()
-    mesh = DiskMesh.from_triangles(SQUARE, triangles)
+    mesh = Disk.from_triangles(SQUARE, triangles)
     triangles[:] = 0
     assert mesh.triangles.tolist() == FAN.tolist()

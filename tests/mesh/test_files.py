@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from eulerplateau.errors import MeshError, OutputError, SpecError
-from eulerplateau.mesh import load_mesh, read_mesh, write_mesh
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh import read_disk, read_mesh, write_mesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.files import read_triangles
 from tests.helpers.shapes import hexagon_points
 
@@ -26,7 +26,7 @@ def saddle(unit=1.0):
     plane, triangles = hexagon_points(5)
     x, y = plane.T
     points = np.stack([x, y, 0.3 * x * y], axis=1) * unit
-    return DiskMesh.from_triangles(points, triangles)
+    return Disk.from_triangles(points, triangles)
 
 
 def by_position(mesh):
@@ -215,7 +215,7 @@ def test_single_precision_files_are_read_as_double(tmp_path):
 def test_a_missing_file_is_a_wrong_specification(tmp_path):
     for name in ("none.vtp", "none.stl", "none.toml", "none.xyz"):
         with pytest.raises(SpecError) as caught:
-            load_mesh(tmp_path / name)
+            read_disk(tmp_path / name)
         assert caught.value.key == str(tmp_path / name)
 
 
@@ -261,8 +261,8 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch, 
 
 def test_reading_a_stored_mesh_loads_no_mesher_and_no_graphics():
     code = (
-        "import sys; from eulerplateau.mesh import load_mesh;"
-        f"load_mesh({str(MESHES / 'elongated.vtp')!r});"
+        "import sys; from eulerplateau.mesh import read_disk;"
+        f"read_disk({str(MESHES / 'elongated.vtp')!r});"
         "sys.exit(bool({'gmsh', 'meshio', 'trimesh', 'pyvista', 'matplotlib'}"
         " & set(sys.modules)))"
     )
@@ -271,7 +271,7 @@ def test_reading_a_stored_mesh_loads_no_mesher_and_no_graphics():
 
 @pytest.mark.parametrize("name", ["hexagon", "elongated"])
 def test_the_stored_meshes_are_what_their_specs_give(name):
-    mesh = load_mesh(MESHES / f"{name}.toml")
+    mesh = read_disk(MESHES / f"{name}.toml")
     points, triangles = read_triangles(MESHES / f"{name}.vtp")
     assert (triangles == mesh.triangles).all()
     assert (points == mesh.x * mesh.length).all()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.errors import EulerPlateauError, SpecError
-from eulerplateau.mesh import ALGORITHMS, MeshSpec, generate, load_mesh
+from eulerplateau.mesh import ALGORITHMS, MeshSpec, generate, read_disk
 from eulerplateau.mesh.polygon import (
     counter_clockwise,
     ellipse,
@@ -297,8 +297,8 @@ def test_meshes_are_well_shaped():
 def test_no_other_process_state_or_file_of_the_user_matters(tmp_path):
     (tmp_path / ".gmshrc").write_text("Mesh.Algorithm = 5; Mesh.MeshSizeFactor = 2;\n")
     code = (
-        "from eulerplateau.mesh import load_mesh;"
-        f"import sys; sys.stdout.write(load_mesh({str(MESHES / 'hexagon.toml')!r}).digest)"
+        "from eulerplateau.mesh import read_disk;"
+        f"import sys; sys.stdout.write(read_disk({str(MESHES / 'hexagon.toml')!r}).digest)"
     )
     done = subprocess.run(
         [sys.executable, "-c", code],
@@ -307,7 +307,7 @@ def test_no_other_process_state_or_file_of_the_user_matters(tmp_path):
         text=True,
         check=True,
     )
-    assert done.stdout == load_mesh(MESHES / "hexagon.toml").digest
+    assert done.stdout == read_disk(MESHES / "hexagon.toml").digest
 
 
 def test_a_machine_without_the_display_libraries_is_told_what_to_install(monkeypatch):

@@ -9,7 +9,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.measures import (
     aspect,
     measure,
@@ -24,13 +24,13 @@ RINGS = (8, 12, 16, 24, 32, 48)
 SIZES = [1.0 / n for n in RINGS]
 
 
-def ellipse_mesh(rings: int, jitter: float = 0.2) -> DiskMesh:
+def ellipse_mesh(rings: int, jitter: float = 0.2) -> Disk:
     """A 2 : 1 ellipse: its long axis is the one farthest pair of loop vertices."""
     points, triangles = shapes.disk_points(rings, jitter)
     return shapes.mesh_of(points * [2.0, 1.0], triangles)
 
 
-def on_eight(mesh: DiskMesh, t: float) -> FloatArray:
+def on_eight(mesh: Disk, t: float) -> FloatArray:
     """The ellipse laid on the surface of eq. eight, its long axis on φ = 0."""
     return shapes.eight(mesh.x[:, :2] / np.abs(mesh.x).max(axis=0)[:2], t)
 
@@ -155,7 +155,7 @@ def test_waist_twist_is_unchanged_by_rigid_motion_turning_over_and_renumbering()
     shuffled = rng.permutation(len(mesh.triangles))
     old = np.argsort(new)
     for corners in (mesh.triangles, mesh.triangles[:, ::-1]):
-        other = DiskMesh.from_triangles(mesh.x[old], new[corners][shuffled])
+        other = Disk.from_triangles(mesh.x[old], new[corners][shuffled])
         assert waist_twist(waist_path(other), x[old]) == pytest.approx(twist, abs=1e-9)
 
 

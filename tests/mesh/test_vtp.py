@@ -9,20 +9,18 @@ import numpy as np
 import pytest
 
 from eulerplateau.errors import MeshError, OutputError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.vtp import read_vtp, write_vtp
 from eulerplateau.mesh.whole_files import whole_file
 from tests.helpers.shapes import disk_points, mesh_of
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(4))
 
 
-def test_surface_line_and_fields_come_back_bit_for_bit(
-    tmp_path: Path, mesh: DiskMesh
-) -> None:
+def test_surface_line_and_fields_come_back_bit_for_bit(tmp_path: Path, mesh: Disk) -> None:
     draw = np.random.default_rng(1)
     x = mesh.x + 1e-13 * draw.standard_normal(mesh.x.shape)
     points = {
@@ -46,16 +44,14 @@ def test_surface_line_and_fields_come_back_bit_for_bit(
             assert np.array_equal(read[name], values, equal_nan=True)
 
 
-def test_surface_alone_has_neither_line_nor_field(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_surface_alone_has_neither_line_nor_field(tmp_path: Path, mesh: Disk) -> None:
     write_vtp(tmp_path / "film.vtp", mesh.x, mesh.triangles)
     found = read_vtp(tmp_path / "film.vtp")
     assert (found.lines, found.point_fields, found.field_data) == ((), {}, {})
 
 
 @pytest.mark.parametrize("mode", ["ascii", "raw", "base64"])
-def test_other_programs_encodings_are_read(
-    tmp_path: Path, mesh: DiskMesh, mode: str
-) -> None:
+def test_other_programs_encodings_are_read(tmp_path: Path, mesh: Disk, mode: str) -> None:
     """ParaView appends raw bytes, which are no text."""
     import pyvista
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
@@ -76,7 +72,7 @@ def test_other_programs_encodings_are_read(
 
 @pytest.mark.parametrize("part", [0.0, 0.1, 0.5, 0.9, 0.99])
 def test_part_of_a_file_is_refused_in_silence(
-    tmp_path: Path, mesh: DiskMesh, part: float, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path, mesh: Disk, part: float, capfd: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "film.vtp"
     write_vtp(path, mesh.x, mesh.triangles)

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.drawing import settled
 from tests.helpers.shapes import disk_points, fitted_order, mesh_of, rotation
 from tests.pictures.test_gallery import twisted
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(6, jitter=0.2))
 
 
-def test_alignment_undoes_every_rigid_motion(mesh: DiskMesh) -> None:
+def test_alignment_undoes_every_rigid_motion(mesh: Disk) -> None:
     x = np.array([twisted(mesh, t) for t in (0.3, 0.4, 0.9)])
     turn = rotation()
     moved = np.array([x[0] @ turn, x[1] @ turn.T + 3.0, x[2] @ turn @ turn - 1.0])
@@ -36,13 +36,13 @@ def gram(x: FloatArray) -> FloatArray:
     return products
 
 
-def volume(x: FloatArray, mesh: DiskMesh) -> float:
+def volume(x: FloatArray, mesh: Disk) -> float:
     """Triple product of three loop chords: changes sign in the mirror."""
     p = x[mesh.loop[[0, 5, 17, 29]]]
     return float(np.linalg.det(p[1:] - p[0]))
 
 
-def test_alignment_follows_a_film_that_turns_over_without_a_jump(mesh: DiskMesh) -> None:
+def test_alignment_follows_a_film_that_turns_over_without_a_jump(mesh: Disk) -> None:
     """The longest move between neighbours is of first order in the step, to the end.
 
     On the way from disk to flat eight the two shorter principal axes change places.
@@ -57,7 +57,7 @@ def test_alignment_follows_a_film_that_turns_over_without_a_jump(mesh: DiskMesh)
 
 
 @pytest.mark.parametrize("t", [0.05, 0.5, 0.9])
-def test_a_film_and_its_mirror_image_stay_mirror_images(mesh: DiskMesh, t: float) -> None:
+def test_a_film_and_its_mirror_image_stay_mirror_images(mesh: Disk, t: float) -> None:
     """Turned close to its mirror image a film keeps its hand: the sign of its volumes."""
     x = twisted(mesh, t) @ rotation()
     mirror = x * [1.0, 1.0, -1.0]
@@ -68,7 +68,7 @@ def test_a_film_and_its_mirror_image_stay_mirror_images(mesh: DiskMesh, t: float
             assert np.allclose(gram(after), gram(before), atol=1e-12)
 
 
-def test_planar_films_are_turned_and_not_mirrored(mesh: DiskMesh) -> None:
+def test_planar_films_are_turned_and_not_mirrored(mesh: Disk) -> None:
     """Distances do not tell a planar film's mirror image from half a turn of it."""
     flat = mesh.x * [1.0, 0.8, 0.0]
     followed = settled(np.array([flat, flat @ rotation()]), [None, 0], mesh.loop)

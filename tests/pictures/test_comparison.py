@@ -23,7 +23,7 @@ from matplotlib.transforms import Bbox
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.scaling import fit_power
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.comparison import WHAT, plot_runs, runs_figure
 from eulerplateau.pictures.onset import fit_onset
 from eulerplateau.runs.record import read_runs
@@ -41,18 +41,18 @@ LABEL = {
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(5))
 
 
 @pytest.fixture(scope="module")
-def sweep(tmp_path_factory: pytest.TempPathFactory, mesh: DiskMesh) -> Path:
+def sweep(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
     rows = [row_at(step, load) for step, load in enumerate(loads())]
     return record(tmp_path_factory.mktemp("runs") / "long", mesh, rows)
 
 
 @pytest.fixture(scope="module")
-def other(tmp_path_factory: pytest.TempPathFactory, mesh: DiskMesh) -> Path:
+def other(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
     rows = [row_at(step, load, 850.0) for step, load in enumerate(loads(850.0))]
     folder = tmp_path_factory.mktemp("runs") / "round"
     return record(folder, mesh, rows, vertices=2000, solver="cg")
@@ -146,7 +146,7 @@ def test_runs_have_labels_colours_markers_and_fills_of_their_own(
 @pytest.mark.parametrize("what", WHAT)
 @pytest.mark.parametrize("count", [1, 4])
 def test_nothing_leaves_the_figure(
-    tmp_path: Path, mesh: DiskMesh, what: str, count: int
+    tmp_path: Path, mesh: Disk, what: str, count: int
 ) -> None:
     rows = [row_at(step, load) for step, load in enumerate(loads())]
     names = [f"a-rather-long-name-of-a-run-{number}" for number in range(count)]
@@ -167,7 +167,7 @@ def test_nothing_leaves_the_figure(
 
 
 def test_labels_tell_folders_meshes_and_solvers_apart(
-    tmp_path: Path, mesh: DiskMesh, sweep: Path, other: Path
+    tmp_path: Path, mesh: Disk, sweep: Path, other: Path
 ) -> None:
     first, second = (run.label for run in read_runs([sweep, other]))
     assert first.startswith("long")
@@ -210,7 +210,7 @@ def test_onset_draws_the_fitted_law_through_its_points(sweep: Path) -> None:
         assert np.allclose(at_points, points[1], rtol=1e-3)
 
 
-def test_too_few_rows_near_an_onset_are_an_error(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_too_few_rows_near_an_onset_are_an_error(tmp_path: Path, mesh: Disk) -> None:
     sparse = [row_at(step, load) for step, load in enumerate((1.0, 600.0, 700.0, 800.0))]
     for name, rows in (("sparse", sparse), ("planar", sparse[:2]), ("bent", sparse[2:])):
         folder = record(tmp_path / name, mesh, rows)
@@ -246,7 +246,7 @@ def test_chosen_steps_are_numbered_where_they_are(sweep: Path) -> None:
 
 
 def test_sweep_up_and_down_and_rows_not_converged_are_told_apart(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     there = [1.0, 300.0, 600.0, 700.0, 800.0]
     rows = [row_at(step, load) for step, load in enumerate(there + there[-2::-1])]
@@ -261,7 +261,7 @@ def test_sweep_up_and_down_and_rows_not_converged_are_told_apart(
 
 @pytest.mark.parametrize("what", ["diagram", "energy", "curvature", "eigenvalue"])
 @pytest.mark.parametrize("case", ["no eigenvalues", "one row", "stalled", "infinite"])
-def test_every_run_has_a_plot(tmp_path: Path, mesh: DiskMesh, what: str, case: str) -> None:
+def test_every_run_has_a_plot(tmp_path: Path, mesh: Disk, what: str, case: str) -> None:
     rows = [row_at(step, load) for step, load in enumerate((1.0, 660.0, 700.0))]
     changes: dict[str, dict[str, Any]] = {
         "no eigenvalues": {"lowest_eigenvalue": None, "n_unstable": None},
@@ -276,7 +276,7 @@ def test_every_run_has_a_plot(tmp_path: Path, mesh: DiskMesh, what: str, case: s
 
 
 @pytest.mark.parametrize("what", ["diagram", "eigenvalue"])
-def test_branches_are_solid_where_stable(tmp_path: Path, mesh: DiskMesh, what: str) -> None:
+def test_branches_are_solid_where_stable(tmp_path: Path, mesh: Disk, what: str) -> None:
     """A planar branch that loses stability at a pitchfork, and the branch it gives."""
     folder = record(tmp_path / "run", mesh, pitchfork())
     (run,) = read_runs([folder])

@@ -18,7 +18,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.record import read_run
@@ -32,16 +32,16 @@ PAGE = Path(__file__).parents[2] / "eulerplateau" / "pictures" / "gallery"
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(6, jitter=0.2))
 
 
-def twisted(mesh: DiskMesh, t: float) -> FloatArray:
+def twisted(mesh: Disk, t: float) -> FloatArray:
     """The film of eq. eight, which turns from a disk to a flat eight as t goes to 1."""
     return 0.1 * eight(mesh.x[:, :2] / np.hypot(*mesh.x.T[:2]).max(), t)
 
 
-def sweep(path: Path, mesh: DiskMesh, loads: Sequence[float]) -> Path:
+def sweep(path: Path, mesh: Disk, loads: Sequence[float]) -> Path:
     with RunFolder.create(path, {"status": "finished"}) as folder:
         for step, load in enumerate(loads):
             row = replace(ROW, step=step, kL3_alpha=load, sigma_hat=3.4 * load)
@@ -49,7 +49,7 @@ def sweep(path: Path, mesh: DiskMesh, loads: Sequence[float]) -> Path:
     return path
 
 
-def branches(path: Path, mesh: DiskMesh) -> Path:
+def branches(path: Path, mesh: Disk) -> Path:
     """A flat branch, and two that leave it at its middle point, to either side."""
     loads = [0.0, 100.0, 200.0, 250.0, 300.0, 250.0, 300.0]
     twists = [0.0, 0.0, 0.0, 0.2, 0.3, -0.2, -0.3]
@@ -94,7 +94,7 @@ def unpacked(text: str, kind: str) -> Any:
 
 
 def test_page_holds_every_row_and_every_shape_to_16_bits(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     gallery = collect([sweep(tmp_path / "run", mesh, [1.0, 400.0, 900.0])])
     (exhibit,) = gallery.exhibits
@@ -131,7 +131,7 @@ def test_columns_the_page_shows_are_those_of_the_table() -> None:
     assert len(keys) > 10
 
 
-def test_cells_that_are_not_numbers_are_null(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_cells_that_are_not_numbers_are_null(tmp_path: Path, mesh: Disk) -> None:
     row = replace(ROW, energy=math.nan, area=math.inf, n_unstable=None)
     with RunFolder.create(tmp_path / "run", {}) as folder:
         folder.record(row, mesh, mesh.x)
@@ -140,9 +140,7 @@ def test_cells_that_are_not_numbers_are_null(tmp_path: Path, mesh: DiskMesh) -> 
     assert [cells[name] for name in ("energy", "area", "n_unstable")] == [None] * 3
 
 
-def test_page_refers_to_nothing_outside_it_and_may_not(
-    tmp_path: Path, mesh: DiskMesh
-) -> None:
+def test_page_refers_to_nothing_outside_it_and_may_not(tmp_path: Path, mesh: Disk) -> None:
     content = Page(page(collect([sweep(tmp_path / "run", mesh, [1.0])])))
     names = {name for _, name, _ in content.attributes}
     assert names & {"src", "href", "srcset", "action", "data", "poster"} == set()
@@ -152,7 +150,7 @@ def test_page_refers_to_nothing_outside_it_and_may_not(
 
 
 def test_names_of_folders_cannot_break_out_of_their_place(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     name = "a<b>&\"c' {{data}} <!--<script>"
     data = Page(page(collect([sweep(tmp_path / name, mesh, [1.0])]))).data
@@ -167,7 +165,7 @@ def test_hundred_shapes_of_547_vertices_stay_below_10_megabytes(tmp_path: Path) 
     assert len(content) < 10 * MEGABYTE
 
 
-def test_runs_on_one_mesh_share_its_triangles(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_runs_on_one_mesh_share_its_triangles(tmp_path: Path, mesh: Disk) -> None:
     other = mesh_of(*disk_points(4))
     folders = [
         sweep(tmp_path / "a" / "run", mesh, [1.0, 2.0]),
@@ -184,7 +182,7 @@ def test_runs_on_one_mesh_share_its_triangles(tmp_path: Path, mesh: DiskMesh) ->
     assert np.allclose(first.x[0], third.x[0], atol=1e-3)
 
 
-def test_branches_start_at_their_special_point(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_branches_start_at_their_special_point(tmp_path: Path, mesh: Disk) -> None:
     (exhibit,) = collect([branches(tmp_path / "run", mesh)]).exhibits
     run = exhibit.run
     places = [(series.start, series.first, series.last) for series in run.series]
@@ -208,7 +206,7 @@ def test_branches_start_at_their_special_point(tmp_path: Path, mesh: DiskMesh) -
     ],
 )
 def test_sweep_is_split_where_its_load_turns(
-    tmp_path: Path, mesh: DiskMesh, loads: list[float], legs: list[Any]
+    tmp_path: Path, mesh: Disk, loads: list[float], legs: list[Any]
 ) -> None:
     run = read_run(sweep(tmp_path / "run", mesh, loads))
     assert [(leg.start, leg.first, leg.last) for leg in run.series] == legs
@@ -225,7 +223,7 @@ def test_sweep_is_split_where_its_load_turns(
     ids=["no table", "missing shape", "broken shape", "other table"],
 )
 def test_folder_that_is_no_whole_run_is_named(
-    tmp_path: Path, mesh: DiskMesh, spoil: Any, at_fault: str
+    tmp_path: Path, mesh: Disk, spoil: Any, at_fault: str
 ) -> None:
     run = sweep(tmp_path / "run", mesh, [1.0, 2.0])
     spoil(run)
@@ -234,16 +232,14 @@ def test_folder_that_is_no_whole_run_is_named(
     assert caught.value.path == run / at_fault
 
 
-def test_run_without_rows_is_named(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_run_without_rows_is_named(tmp_path: Path, mesh: Disk) -> None:
     run = sweep(tmp_path / "run", mesh, [])
     with pytest.raises(OutputError) as caught:
         collect([run])
     assert caught.value.path == run
 
 
-def test_shapes_of_two_meshes_in_one_run_are_refused(
-    tmp_path: Path, mesh: DiskMesh
-) -> None:
+def test_shapes_of_two_meshes_in_one_run_are_refused(tmp_path: Path, mesh: Disk) -> None:
     run = sweep(tmp_path / "run", mesh, [1.0, 2.0])
     other = sweep(tmp_path / "other", mesh_of(*disk_points(4)), [1.0, 2.0])
     (other / shape_name(1)).replace(run / shape_name(1))
@@ -252,9 +248,7 @@ def test_shapes_of_two_meshes_in_one_run_are_refused(
     assert caught.value.path == run / shape_name(1)
 
 
-def test_table_of_special_points_that_is_none_is_named(
-    tmp_path: Path, mesh: DiskMesh
-) -> None:
+def test_table_of_special_points_that_is_none_is_named(tmp_path: Path, mesh: Disk) -> None:
     run = branches(tmp_path / "run", mesh)
     (run / "special_points.csv").write_text("kind\nfold\n")
     with pytest.raises(OutputError) as caught:
@@ -273,9 +267,7 @@ def run_command(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_command_writes_the_page_whole_or_says_why_not(
-    tmp_path: Path, mesh: DiskMesh
-) -> None:
+def test_command_writes_the_page_whole_or_says_why_not(tmp_path: Path, mesh: Disk) -> None:
     run = sweep(tmp_path / "run", mesh, [1.0, 2.0])
     out = tmp_path / "page.html"
     assert run_command(run, "-o", out).returncode == 0

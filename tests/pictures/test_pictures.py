@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.drawing import aligned, draw_in_child
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.pictures.figure import drawn
@@ -47,7 +47,7 @@ SEQUENCE = [
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(8))
 
 
@@ -59,7 +59,7 @@ def rows() -> list[Row]:
     ]
 
 
-def twisted(mesh: DiskMesh, t: float) -> FloatArray:
+def twisted(mesh: Disk, t: float) -> FloatArray:
     """The film of eq. eight on `mesh`, with a loop of unit length."""
     x = eight(mesh.x[:, :2] / np.hypot(*mesh.x.T[:2]).max(), t)
     loop = x[mesh.loop]
@@ -73,7 +73,7 @@ def read_png(path: Path) -> Image:
     return image
 
 
-def record(path: Path, mesh: DiskMesh, films: Sequence[FloatArray]) -> None:
+def record(path: Path, mesh: Disk, films: Sequence[FloatArray]) -> None:
     with start(path) as folder:
         for step, x in enumerate(films):
             folder.record(replace(ROW, step=step, kL3_alpha=100.0 * step), mesh, x)
@@ -109,7 +109,7 @@ def test_film_without_a_waist_path_still_has_states(rows: list[Row]) -> None:
     assert distinct_steps([replace(row, waist_twist=math.nan) for row in rows])
 
 
-def test_alignment_undoes_every_rigid_motion(mesh: DiskMesh) -> None:
+def test_alignment_undoes_every_rigid_motion(mesh: Disk) -> None:
     """For films without symmetry: a symmetric one may lie in either of two like ways."""
 
     def shapes(moved: bool) -> list[Shape]:
@@ -130,7 +130,7 @@ def test_alignment_undoes_every_rigid_motion(mesh: DiskMesh) -> None:
     assert error < 1e-12
 
 
-def test_alignment_never_mirrors(mesh: DiskMesh) -> None:
+def test_alignment_never_mirrors(mesh: Disk) -> None:
     """A film and its mirror image stay as unlike as they are."""
     x = twisted(mesh, 0.5)
     left = Shape(x, mesh.triangles, mesh.loop)
@@ -207,7 +207,7 @@ def test_every_sweep_has_a_diagram(tmp_path: Path, rows: list[Row], case: str) -
 
 
 def test_render_shows_all_of_each_film_and_both_its_sides(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     """White frame: nothing is cut off. A flat disk shows one side, the eight shows both."""
     turn = rotation()
@@ -238,7 +238,7 @@ def part_of(mask: NDArray[np.bool_]) -> float:
     return float(mask.mean())
 
 
-def test_missing_shape_is_reported_not_raised(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_missing_shape_is_reported_not_raised(tmp_path: Path, mesh: Disk) -> None:
     record(tmp_path, mesh, [mesh.x])
     assert not draw_shapes(tmp_path, [7])
 
@@ -267,6 +267,6 @@ def test_child_that_dies_costs_only_its_picture(
     assert caplog.records
 
 
-def test_rendering_no_steps_is_no_failure(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_rendering_no_steps_is_no_failure(tmp_path: Path, mesh: Disk) -> None:
     record(tmp_path, mesh, [mesh.x])
     assert draw_shapes(tmp_path, [])

@@ -14,7 +14,7 @@ import pytest
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.render import STILLS, SWEEP, TURN, RunPictures, draw_shapes
 from tests.helpers.shapes import disk_points, eight, fitted_order, mesh_of, rotation
 from tests.runs.test_folder import start
@@ -27,11 +27,11 @@ FLAT, FOLDED = 0, 5
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(8))
 
 
-def twisted(mesh: DiskMesh, t: float) -> FloatArray:
+def twisted(mesh: Disk, t: float) -> FloatArray:
     """The film of eq. eight, flat at t = 0, without symmetry, its loop of length 1."""
     x = eight(mesh.x[:, :2] * [1.2, 1.0] / np.hypot(*mesh.x.T[:2]).max(), t)
     x[:, 2] += t * (0.3 * x[:, 0] ** 2 + 0.2 * x[:, 1] ** 3)
@@ -39,7 +39,7 @@ def twisted(mesh: DiskMesh, t: float) -> FloatArray:
     return x / np.linalg.norm(np.roll(loop, -1, axis=0) - loop, axis=1).sum()
 
 
-def record(path: Path, mesh: DiskMesh, films: list[FloatArray]) -> None:
+def record(path: Path, mesh: Disk, films: list[FloatArray]) -> None:
     """A sweep of `films`, each left lying in a way of its own."""
     turn, lie = rotation(), np.eye(3)
     with start(path) as folder:
@@ -50,7 +50,7 @@ def record(path: Path, mesh: DiskMesh, films: list[FloatArray]) -> None:
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory, mesh: DiskMesh) -> Path:
+def run(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
     """Six films that twist more and more, and the first again at half its size."""
     path = tmp_path_factory.mktemp("render")
     films = [twisted(mesh, t) for t in np.linspace(0.0, 0.9, N_SHAPES - 1)]
@@ -211,16 +211,14 @@ def unlike(a: Image, b: Image) -> float:
     return float((np.abs(a.astype(int) - b).max(axis=2) > 30).mean())
 
 
-def test_frames_of_one_shape_however_it_lies_are_alike(
-    tmp_path: Path, mesh: DiskMesh
-) -> None:
+def test_frames_of_one_shape_however_it_lies_are_alike(tmp_path: Path, mesh: Disk) -> None:
     record(tmp_path, mesh, [twisted(mesh, 0.4)] * 2)
     shapes = RunPictures.read(tmp_path, [0, 1]).shapes
     assert np.abs(shapes[0].x - shapes[1].x).max() < 1e-12
 
 
 def test_displacement_from_frame_to_frame_is_proportional_to_the_step(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     """From flat to past the quarter turn, where principal axes would swap with a jump."""
     counts = [8, 16, 32]

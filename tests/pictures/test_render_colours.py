@@ -7,7 +7,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.pictures.render.colours import (
     LOOP,
@@ -24,23 +24,23 @@ ASLANT = np.array([0.0, -0.6, 0.8])
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(5))
 
 
-def film(mesh: DiskMesh, t: float) -> Shape:
+def film(mesh: Disk, t: float) -> Shape:
     x = eight(mesh.x[:, :2] / np.hypot(*mesh.x.T[:2]).max(), t)
     return Shape(x, mesh.triangles, mesh.loop)
 
 
-def only(mesh: DiskMesh, value: float, *, on_loop: bool) -> FloatArray:
+def only(mesh: Disk, value: float, *, on_loop: bool) -> FloatArray:
     """A field that is `value` on the loop, or inside, and NaN elsewhere."""
     values = np.full(mesh.n_v, np.nan if on_loop else value)
     values[mesh.loop] = value if on_loop else np.nan
     return values
 
 
-def test_a_flat_film_has_one_colour_a_side(mesh: DiskMesh) -> None:
+def test_a_flat_film_has_one_colour_a_side(mesh: Disk) -> None:
     front, back = (
         np.unique(coloured_film(film(mesh, 0.0), eye, SIDES, None, None).rgba, axis=0)
         for eye in (ABOVE, -ABOVE)
@@ -52,9 +52,7 @@ def test_a_flat_film_has_one_colour_a_side(mesh: DiskMesh) -> None:
 
 
 @pytest.mark.parametrize("eye", [ABOVE, ASLANT])
-def test_triangles_come_farthest_first_and_all_of_them(
-    mesh: DiskMesh, eye: FloatArray
-) -> None:
+def test_triangles_come_farthest_first_and_all_of_them(mesh: Disk, eye: FloatArray) -> None:
     shape = film(mesh, 0.7)
     painted = coloured_film(shape, eye, SOAP, None, None).corners.reshape(-1, 3, 3)
     assert (np.diff(painted.mean(axis=1) @ eye) >= -1e-15).all()
@@ -62,7 +60,7 @@ def test_triangles_come_farthest_first_and_all_of_them(
     assert np.array_equal(np.sort(painted, axis=0), np.sort(corners, axis=0))
 
 
-def test_soap_is_translucent_and_less_so_aslant(mesh: DiskMesh) -> None:
+def test_soap_is_translucent_and_less_so_aslant(mesh: Disk) -> None:
     """Through a sheet at angle a passes the part that passes it straight to the 1/cos a."""
     straight, aslant = (
         coloured_film(film(mesh, 0.0), eye, SOAP, None, None).rgba[:, 3]
@@ -74,7 +72,7 @@ def test_soap_is_translucent_and_less_so_aslant(mesh: DiskMesh) -> None:
     assert np.log(1.0 - aslant) * 0.8 == pytest.approx(np.log(1.0 - straight))
 
 
-def test_a_field_inside_has_the_colours_of_its_bar_up_to_the_loop(mesh: DiskMesh) -> None:
+def test_a_field_inside_has_the_colours_of_its_bar_up_to_the_loop(mesh: Disk) -> None:
     shape = film(mesh, 0.0)
     values = only(mesh, 0.3, on_loop=False)
     scale = scale_of("angle_defect", [values, -values])
@@ -87,7 +85,7 @@ def test_a_field_inside_has_the_colours_of_its_bar_up_to_the_loop(mesh: DiskMesh
     assert (loop_colours(shape, values, scale) == LOOP).all()
 
 
-def test_a_field_on_the_loop_has_the_colours_of_its_bar(mesh: DiskMesh) -> None:
+def test_a_field_on_the_loop_has_the_colours_of_its_bar(mesh: Disk) -> None:
     shape = film(mesh, 0.5)
     values = np.full(mesh.n_v, np.nan)
     values[mesh.loop] = np.linspace(1.0, 2.0, mesh.n_b)
@@ -99,7 +97,7 @@ def test_a_field_on_the_loop_has_the_colours_of_its_bar(mesh: DiskMesh) -> None:
 
 
 def test_the_scale_is_the_same_for_all_shapes_and_symmetric_where_signs_matter(
-    mesh: DiskMesh,
+    mesh: Disk,
 ) -> None:
     weak, strong = only(mesh, -0.1, on_loop=False), only(mesh, -5.0, on_loop=False)
     signed = scale_of("angle_defect", [weak, strong])
@@ -108,13 +106,13 @@ def test_the_scale_is_the_same_for_all_shapes_and_symmetric_where_signs_matter(
     assert (unsigned.low, unsigned.high) == (0.1, 5.0)
 
 
-def test_a_field_that_is_rounding_is_not_blown_up(mesh: DiskMesh) -> None:
+def test_a_field_that_is_rounding_is_not_blown_up(mesh: Disk) -> None:
     values = 1e-14 * np.random.default_rng(1).standard_normal(mesh.n_v)
     scale = scale_of("kappa_n", [values])
     assert np.ptp(scale.rgb(values), axis=0).max() < 0.01
 
 
-def test_a_field_without_a_value_is_refused(mesh: DiskMesh) -> None:
+def test_a_field_without_a_value_is_refused(mesh: Disk) -> None:
     with pytest.raises(SpecError) as caught:
         scale_of("kappa", [np.full(mesh.n_v, np.nan)])
     assert caught.value.key == "--colour"

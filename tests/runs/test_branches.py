@@ -16,7 +16,7 @@ import pytest
 from eulerplateau.branches.special import BIFURCATION
 from eulerplateau.errors import OutputError, SpecError
 from eulerplateau.mesh import write_mesh
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.runs.exploration import SPECIAL_COLUMNS, Exploration, run_branches
 from eulerplateau.runs.folder import shape_name
@@ -77,7 +77,7 @@ def read_special(folder: Path) -> list[dict[str, str]]:
 
 
 def test_critical_mode_is_in_the_shape_of_its_special_point(
-    result: Exploration, elongated: DiskMesh
+    result: Exploration, elongated: Disk
 ) -> None:
     """Through the whole film, and out of its plane."""
     import pyvista
@@ -137,7 +137,7 @@ def test_special_point_of_a_soap_film_has_its_load_and_error_in_both_units(
     assert float(special["sigma_hat_error"]) < 1e-8 * float(special["sigma_hat"])
 
 
-def test_summary_says_what_was_run(result: Exploration, elongated: DiskMesh) -> None:
+def test_summary_says_what_was_run(result: Exploration, elongated: Disk) -> None:
     summary = json.loads((result.folder / "run.json").read_text())
     assert summary["status"] == "finished"
     assert summary["totals"]["points"] == len(result.rows)

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.shape_files import read_shape
@@ -23,7 +23,7 @@ from tests.runs.test_output import ROW, twisted
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(6))
 
 
@@ -31,7 +31,7 @@ def start(path: Path) -> RunFolder:
     return RunFolder.create(path, {"status": "running"})
 
 
-def test_everything_is_valid_after_every_step(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_everything_is_valid_after_every_step(tmp_path: Path, mesh: Disk) -> None:
     with start(tmp_path / "run") as folder:
         for step in range(4):
             row = replace(ROW, step=step, kL3_alpha=100.0 * step)
@@ -43,7 +43,7 @@ def test_everything_is_valid_after_every_step(tmp_path: Path, mesh: DiskMesh) ->
 
 @pytest.mark.parametrize("moment", [0, 1])
 def test_interrupt_in_the_middle_of_a_step_leaves_no_half(
-    tmp_path: Path, mesh: DiskMesh, monkeypatch: pytest.MonkeyPatch, moment: int
+    tmp_path: Path, mesh: Disk, monkeypatch: pytest.MonkeyPatch, moment: int
 ) -> None:
     """Ctrl-C while the shape (0) or the series (1) takes its final name."""
     rename, calls = os.replace, []
@@ -141,7 +141,7 @@ def test_foreign_folder_is_refused_and_untouched(
 
 
 def test_earlier_run_is_replaced_and_other_files_are_kept(
-    tmp_path: Path, mesh: DiskMesh
+    tmp_path: Path, mesh: Disk
 ) -> None:
     with start(tmp_path) as folder:
         for step in range(3):

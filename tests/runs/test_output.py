@@ -16,7 +16,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.film.load import SPRING_LOAD
 from eulerplateau.mesh.curvature import angle_defects, loop_frame
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.shape_files import read_shape, write_series, write_shape
@@ -51,11 +51,11 @@ ROW = Row(
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(6))
 
 
-def twisted(mesh: DiskMesh, t: float) -> FloatArray:
+def twisted(mesh: Disk, t: float) -> FloatArray:
     """The film of eq. eight on `mesh`, its size left alone."""
     return eight(mesh.x[:, :2] / np.hypot(*mesh.x.T[:2]).max(), t)
 
@@ -121,7 +121,7 @@ def test_a_table_that_is_not_ours_is_refused(tmp_path: Path, content: bytes) -> 
     assert caught.value.path == path
 
 
-def test_shape_reads_back_bit_for_bit(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_shape_reads_back_bit_for_bit(tmp_path: Path, mesh: Disk) -> None:
     x = twisted(mesh, 0.4) + 1e-13
     path = tmp_path / "shape.vtp"
     write_shape(path, mesh, x, replace(ROW, step=3, energy=1.0 / 3.0))
@@ -134,7 +134,7 @@ def test_shape_reads_back_bit_for_bit(tmp_path: Path, mesh: DiskMesh) -> None:
     assert told == [3, 0.1 + 0.2, 1.0 / 3.0]
 
 
-def test_pyvista_finds_every_field_where_it_belongs(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_pyvista_finds_every_field_where_it_belongs(tmp_path: Path, mesh: Disk) -> None:
     import pyvista
 
     x = twisted(mesh, 0.4)
@@ -162,7 +162,7 @@ def test_pyvista_finds_every_field_where_it_belongs(tmp_path: Path, mesh: DiskMe
 
 
 @pytest.mark.parametrize("part", [0.0, 0.3, 0.6, 0.95])
-def test_part_of_a_shape_is_refused(tmp_path: Path, mesh: DiskMesh, part: float) -> None:
+def test_part_of_a_shape_is_refused(tmp_path: Path, mesh: Disk, part: float) -> None:
     path = tmp_path / "shape.vtp"
     write_shape(path, mesh, mesh.x, ROW)
     content = path.read_bytes()
@@ -224,7 +224,7 @@ def test_full_device_is_an_output_error() -> None:
     assert caught.value.exit_code == 5
 
 
-def test_path_below_a_file_is_an_output_error(tmp_path: Path, mesh: DiskMesh) -> None:
+def test_path_below_a_file_is_an_output_error(tmp_path: Path, mesh: Disk) -> None:
     (tmp_path / "file").write_text("not a folder")
     below = tmp_path / "file" / "run"
     for path in (below, tmp_path / "file"):

@@ -12,7 +12,7 @@ import pytest
 
 from eulerplateau.errors import EulerPlateauError, MissingLibraryError, OutputError
 from eulerplateau.film.load import SPRING_LOAD, TENSION
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.record import Run, read_run, read_runs
 from eulerplateau.runs.series import read_legs
@@ -24,19 +24,19 @@ from tests.runs.test_output import ROW
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return mesh_of(*disk_points(4))
 
 
 @pytest.fixture
-def sweep(tmp_path: Path, mesh: DiskMesh) -> Path:
+def sweep(tmp_path: Path, mesh: Disk) -> Path:
     return record(
         tmp_path / "sweep", mesh, [row_at(i, v) for i, v in enumerate((1.0, 9.0))]
     )
 
 
 @pytest.fixture
-def branches(tmp_path: Path, mesh: DiskMesh) -> Path:
+def branches(tmp_path: Path, mesh: Disk) -> Path:
     return record(tmp_path / "explored", mesh, pitchfork())
 
 
@@ -58,7 +58,7 @@ def test_a_run_in_progress_or_without_rows_prints_too(sweep: Path) -> None:
     assert "empty" in repr(Run(Path("empty"), ()))
 
 
-def test_rows_shapes_and_load_are_those_of_the_folder(sweep: Path, mesh: DiskMesh) -> None:
+def test_rows_shapes_and_load_are_those_of_the_folder(sweep: Path, mesh: Disk) -> None:
     run = read_run(str(sweep))
     assert [row.kL3_alpha for row in run.rows] == [1.0, 9.0]
     assert run.load is SPRING_LOAD
@@ -81,7 +81,7 @@ def test_table_of_special_points_is_read_with_the_branches(branches: Path) -> No
 
 
 def test_runs_of_different_films_are_over_one_load(
-    tmp_path: Path, mesh: DiskMesh, sweep: Path
+    tmp_path: Path, mesh: Disk, sweep: Path
 ) -> None:
     other = record(tmp_path / "area", mesh, [row_at(0, 1.0)], model="area")
     assert read_run(other).load is TENSION

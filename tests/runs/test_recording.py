@@ -9,14 +9,14 @@ import pytest
 
 from eulerplateau.film import SPRING_LOAD, TENSION, Load
 from eulerplateau.mesh import measure
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.recording import make_row
 from eulerplateau.runs.table import Row
 from eulerplateau.solvers import Equilibrium, Problem, Stability, Status, solve
 from tests.helpers.shapes import disk_points, fitted_order, mesh_of
 
 
-def row_of(found: Equilibrium, disk: DiskMesh, load: Load) -> Row:
+def row_of(found: Equilibrium, disk: Disk, load: Load) -> Row:
     return make_row(0, found, load, Row, asdict(measure(disk, found.shape)))
 
 
@@ -26,7 +26,7 @@ def at_rest(problem: Problem, load: float) -> Equilibrium:
     return problem.equilibrium(shape, none, load, Status.CONVERGED)
 
 
-def test_film_energy_of_a_soap_film_is_its_tension_times_its_area(oval: DiskMesh) -> None:
+def test_film_energy_of_a_soap_film_is_its_tension_times_its_area(oval: Disk) -> None:
     problem = Problem(oval, "area")
     for load in (300.0, 1000.0):
         found = solve(problem, load)
@@ -54,7 +54,7 @@ def test_bending_energy_of_a_bare_circle_goes_to_four_pi_squared(film: str) -> N
 
 
 def test_every_number_of_an_equilibrium_is_in_the_column_of_its_name(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     """Numbers that all differ: no two columns can be swapped."""
     told = {

@@ -13,7 +13,7 @@ import pytest
 
 from eulerplateau.errors import MeshError, OutputError, SpecError
 from eulerplateau.mesh import write_mesh
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.files import read_triangles
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape
@@ -27,7 +27,7 @@ Spec = Callable[..., RunSpec]
 
 
 @pytest.fixture
-def spec(tmp_path: Path, oval: DiskMesh) -> Spec:
+def spec(tmp_path: Path, oval: Disk) -> Spec:
     """A run on a stored mesh; sections as keywords."""
     file = tmp_path / "oval.vtp"
     write_mesh(oval, file)
@@ -74,7 +74,7 @@ def test_every_row_and_its_shape_are_on_disk_when_they_are_announced(
 
 
 def test_run_json_says_what_was_run_and_how_it_ended(
-    tmp_path: Path, spec: Spec, oval: DiskMesh
+    tmp_path: Path, spec: Spec, oval: Disk
 ) -> None:
     run = spec([1, 500], start={"seed": 5})
     run_sweep(run, tmp_path / "out")
@@ -113,7 +113,7 @@ def test_up_and_down_agree_where_there_is_one_equilibrium(
 
 
 def test_start_is_the_flat_mesh_displaced_across_its_plane_by_the_seeds_noise(
-    oval: DiskMesh, spec: Spec
+    oval: Disk, spec: Spec
 ) -> None:
     run = spec([1], start={"displacement": 2e-3, "seed": 3})
     x = start_shape(run, oval).x
@@ -126,7 +126,7 @@ def test_start_is_the_flat_mesh_displaced_across_its_plane_by_the_seeds_noise(
 
 
 def test_start_is_displaced_across_the_plane_wherever_the_plane_lies(
-    oval: DiskMesh, spec: Spec
+    oval: Disk, spec: Spec
 ) -> None:
     tilted = replace(oval, x=oval.x[:, [2, 0, 1]])
     offset = start_shape(spec([1]), tilted).x - tilted.x
@@ -204,7 +204,7 @@ def test_rows_do_not_depend_on_the_units_of_spring_constant_and_length(
 
 
 def test_unit_of_the_mesh_file_does_not_matter(
-    tmp_path: Path, spec: Spec, oval: DiskMesh
+    tmp_path: Path, spec: Spec, oval: Disk
 ) -> None:
     big = tmp_path / "big.vtp"
     write_mesh(replace(oval, length=1000 * oval.length), big)
@@ -215,7 +215,7 @@ def test_unit_of_the_mesh_file_does_not_matter(
 
 
 def test_saved_shapes_are_the_equilibria_of_their_rows(
-    tmp_path: Path, spec: Spec, oval: DiskMesh
+    tmp_path: Path, spec: Spec, oval: Disk
 ) -> None:
     row = run_sweep(spec([900]), tmp_path / "out").rows[0]
     points, _ = read_triangles(tmp_path / "out" / "shapes" / "shape_0000.vtp")

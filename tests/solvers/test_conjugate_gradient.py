@@ -10,7 +10,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import area
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import SOLVERS, Problem, conjugate_gradient, solving
 from eulerplateau.solvers.equilibrium import (
     LENGTH_TOLERANCE,
@@ -22,21 +22,21 @@ from eulerplateau.solvers.start import smooth_kick
 from tests.helpers import equilibria, shapes
 
 
-def regular() -> DiskMesh:
+def regular() -> Disk:
     return shapes.mesh_of(*shapes.hexagon_points(5))
 
 
-def irregular() -> DiskMesh:
+def irregular() -> Disk:
     points, triangles = shapes.disk_points(6, jitter=0.2)
     return shapes.mesh_of(points * [1.5, 1.0], triangles)
 
 
-def long() -> DiskMesh:
+def long() -> Disk:
     points, triangles = shapes.hexagon_points(5)
     return shapes.mesh_of(points * [2.0, 1.0], triangles)
 
 
-def solve(name: str, mesh: DiskMesh, x: FloatArray, load: float) -> Equilibrium:
+def solve(name: str, mesh: Disk, x: FloatArray, load: float) -> Equilibrium:
     return solving.solve(Problem(mesh), load, x, solver=name)
 
 
@@ -55,7 +55,7 @@ CASES = [
 
 @pytest.mark.parametrize(("make", "load"), CASES)
 def test_every_solver_reaches_the_same_equilibrium_on_every_case(
-    make: Callable[[], DiskMesh], load: float
+    make: Callable[[], Disk], load: float
 ) -> None:
     mesh = make()
     start = shapes.crumpled(mesh, 1e-3)
@@ -106,9 +106,7 @@ def test_uneven_loop_of_a_soap_film_ends_where_its_sliding_was_left(plane: bool)
     assert gap < 1e-3
 
 
-def test_accepted_state_is_what_its_record_says(
-    oval: DiskMesh, oval_problem: Problem
-) -> None:
+def test_accepted_state_is_what_its_record_says(oval: Disk, oval_problem: Problem) -> None:
     found = solve("cg", oval, shapes.crumpled(oval, 1e-3), 900.0)
     film = oval_problem.film.energy_gradient(found.shape, 900.0)[0]
     bending = oval_problem.bending_energy(found.shape)[0]
@@ -151,7 +149,7 @@ def test_kicks_that_are_not_confirmed_give_a_saddle(
 
 
 def test_restart_from_newtons_minimum_stays_there(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     start = solve("newton", oval, shapes.crumpled(oval, 1e-3), 900.0)
     found = solving.solve(oval_problem, 900.0, start, solver="cg")
@@ -161,7 +159,7 @@ def test_restart_from_newtons_minimum_stays_there(
 
 @pytest.mark.parametrize("limit", [1, 50])
 def test_iteration_limit_is_a_status_and_not_an_exception(
-    oval: DiskMesh, oval_problem: Problem, limit: int
+    oval: Disk, oval_problem: Problem, limit: int
 ) -> None:
     start = shapes.crumpled(oval, 1e-3)
     found = solving.solve(oval_problem, 900.0, start, solver="cg", max_iterations=limit)
@@ -173,7 +171,7 @@ def test_iteration_limit_is_a_status_and_not_an_exception(
 
 @pytest.mark.parametrize("bad", [np.nan, 1e200])
 def test_overflow_is_a_status_and_not_an_exception(
-    oval: DiskMesh, oval_problem: Problem, bad: float
+    oval: Disk, oval_problem: Problem, bad: float
 ) -> None:
     x = oval.x.copy()
     x[3, 2] = bad
@@ -182,14 +180,14 @@ def test_overflow_is_a_status_and_not_an_exception(
     assert found.status is Status.NOT_FINITE
 
 
-def test_two_solves_are_the_same_bit_for_bit(oval: DiskMesh) -> None:
+def test_two_solves_are_the_same_bit_for_bit(oval: Disk) -> None:
     start = shapes.crumpled(oval, 1e-3)
     one, two = (solve("cg", oval, start, 900.0) for _ in range(2))
     np.testing.assert_array_equal(one.shape.x, two.shape.x)
     assert one.iterations == two.iterations
 
 
-def test_kick_is_transverse_smooth_and_a_thousandth_of_the_length(oval: DiskMesh) -> None:
+def test_kick_is_transverse_smooth_and_a_thousandth_of_the_length(oval: Disk) -> None:
     turn = shapes.rotation()
     x = oval.x @ turn.T
     kick = smooth_kick(x[oval.loop], x, np.random.default_rng(0), 2)
@@ -205,7 +203,7 @@ def test_kick_is_transverse_smooth_and_a_thousandth_of_the_length(oval: DiskMesh
 
 @pytest.mark.slow
 @pytest.mark.parametrize("load", [300.0, 720.0, 1000.0])
-def test_solvers_agree_on_the_papers_mesh(elongated: DiskMesh, load: float) -> None:
+def test_solvers_agree_on_the_papers_mesh(elongated: Disk, load: float) -> None:
     start = shapes.crumpled(elongated, 1e-3)
     cg, exact = (solve(name, elongated, start, load) for name in ("cg", "newton"))
     assert cg.status is Status.CONVERGED

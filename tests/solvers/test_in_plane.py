@@ -9,7 +9,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.film.area import area
 from eulerplateau.loop import Loop, LoopEnergy, close_with_lengths
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, Status, solve, stability, tangent_model
 from eulerplateau.solvers.in_plane.newton import COARSE, minimum_in_plane, settle_in_plane
 from tests.helpers import shapes
@@ -147,7 +147,7 @@ def test_fan_about_one_vertex_needs_no_better_mesh() -> None:
     points, triangles = shapes.disk_points(12)
     mesh = shapes.mesh_of(points * [1.4, 0.7], triangles)
     spokes = np.arange(mesh.n_b)
-    fan = DiskMesh.from_triangles(
+    fan = Disk.from_triangles(
         np.concatenate([np.zeros((1, 3)), mesh.x[mesh.loop]]),
         np.stack([0 * spokes, 1 + spokes, 1 + (spokes + 1) % mesh.n_b], axis=1),
     )

@@ -14,7 +14,7 @@ from eulerplateau.loop import kernels, slide_kernels
 from eulerplateau.loop.lengths import jacobian
 from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.motions import rigid_motions, sliding
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.polygon import polygon_area
 from eulerplateau.mesh.triangles import cotangents
 from eulerplateau.solvers.in_plane import kernels as plane_kernels
@@ -221,7 +221,7 @@ def test_strands_are_within_reach_as_by_all_distances(aspect: float) -> None:
         assert not kernels.strands_within(x, nearest * (1 - 1e-9), apart)
 
 
-def test_inside_follows_harmonically(oval: DiskMesh) -> None:
+def test_inside_follows_harmonically(oval: Disk) -> None:
     film, x = area(oval).tiling(oval.triangles), np.ascontiguousarray(oval.x[:, :2])
     move = np.zeros_like(x)
     move[oval.loop] = 0.1 * np.random.default_rng(9).standard_normal((oval.n_b, 2))

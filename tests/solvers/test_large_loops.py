@@ -8,7 +8,7 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import Loop, LoopEnergy, length_metric, rigid_motions
 from eulerplateau.loop.lengths import jacobian
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import (
     Problem,
     TangentModel,
@@ -36,7 +36,7 @@ def disk_film(n: int, sigma_hat: float) -> FloatArray:
 
 
 @pytest.fixture(scope="module")
-def problem(elongated: DiskMesh) -> Problem:
+def problem(elongated: Disk) -> Problem:
     return Problem(elongated)
 
 
@@ -50,7 +50,7 @@ def subspace(energy: LoopEnergy, loop: Loop, x: FloatArray) -> TangentModel:
 
 
 @pytest.fixture(scope="module")
-def states(elongated: DiskMesh, problem: Problem) -> dict[str, TangentModel]:
+def states(elongated: Disk, problem: Problem) -> dict[str, TangentModel]:
     """Dense models: stable and unstable equilibria, and loops out of balance."""
     found = {}
     x = shapes.crumpled(elongated, 1e-3)
@@ -205,7 +205,7 @@ def set_dense_loop(monkeypatch: pytest.MonkeyPatch, largest: int) -> None:
 
 
 def test_newton_by_subspaces_reaches_what_the_dense_newton_reaches(
-    elongated: DiskMesh, problem: Problem, monkeypatch: pytest.MonkeyPatch
+    elongated: Disk, problem: Problem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     start = shapes.crumpled(elongated, 1e-3)
     found = {}
@@ -226,7 +226,7 @@ def test_newton_by_subspaces_reaches_what_the_dense_newton_reaches(
 
 
 def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_subspaces(
-    hexagon: DiskMesh, monkeypatch: pytest.MonkeyPatch
+    hexagon: Disk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     set_dense_loop(monkeypatch, 40)
     problem = Problem(hexagon)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Equilibrium, Problem, Status, solving
 from tests.helpers import equilibria, shapes
 
@@ -31,7 +31,7 @@ def assert_minimum(found: Equilibrium) -> None:
 
 @pytest.mark.parametrize("load", [0.0, 1.0, 300.0, 700.0, 900.0, 1600.0, 3000.0])
 def test_random_starts_reach_a_minimum_at_every_load(
-    oval: DiskMesh, oval_problem: Problem, load: float
+    oval: Disk, oval_problem: Problem, load: float
 ) -> None:
     for seed in range(3):
         noise = np.random.default_rng(seed).standard_normal(oval.x.shape)
@@ -40,7 +40,7 @@ def test_random_starts_reach_a_minimum_at_every_load(
 
 @pytest.mark.parametrize("size", [0.05, 0.3, 10.0])
 def test_starts_that_look_nothing_like_the_mesh_reach_a_minimum(
-    oval: DiskMesh, oval_problem: Problem, size: float
+    oval: Disk, oval_problem: Problem, size: float
 ) -> None:
     for seed in range(3):
         noise = np.random.default_rng(seed).standard_normal(oval.x.shape)
@@ -50,7 +50,7 @@ def test_starts_that_look_nothing_like_the_mesh_reach_a_minimum(
 @pytest.mark.slow
 @pytest.mark.parametrize("load", [1.0, 500.0, 853.0, 1500.0, 3000.0])
 def test_a_hundred_random_starts_of_the_papers_size_reach_a_minimum(
-    elongated: DiskMesh, load: float
+    elongated: Disk, load: float
 ) -> None:
     problem = Problem(elongated)
     for seed in range(100):
@@ -60,7 +60,7 @@ def test_a_hundred_random_starts_of_the_papers_size_reach_a_minimum(
 
 
 def test_a_start_that_is_not_a_number_is_reported_and_not_raised(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     x = oval.x.copy()
     x[oval.loop[3], 1] = np.nan
@@ -68,7 +68,7 @@ def test_a_start_that_is_not_a_number_is_reported_and_not_raised(
 
 
 def test_a_start_that_is_a_point_is_reported_and_not_raised(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     found = solve(oval_problem, np.zeros_like(oval.x), 700.0)
     assert found.status is Status.STALLED
@@ -76,7 +76,7 @@ def test_a_start_that_is_a_point_is_reported_and_not_raised(
 
 @pytest.mark.parametrize("load", [500.0, 900.0])
 def test_iteration_ends_quadratically(
-    oval: DiskMesh, oval_problem: Problem, load: float
+    oval: Disk, oval_problem: Problem, load: float
 ) -> None:
     """The residual after each of the last iterations goes with the square of the last."""
     start = shapes.crumpled(oval, 1e-3)
@@ -97,7 +97,7 @@ def test_iteration_ends_quadratically(
 
 
 def test_iteration_limit_is_a_status_and_keeps_the_best_shape(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     found = solve(oval_problem, shapes.crumpled(oval, 1e-2), 900.0, max_iterations=2)
     assert found.status is Status.ITERATION_LIMIT
@@ -107,7 +107,7 @@ def test_iteration_limit_is_a_status_and_keeps_the_best_shape(
 
 
 def test_energy_never_rises_from_one_iteration_to_the_next(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     start = shapes.crumpled(oval, 1e-2)
     energies = [
@@ -120,7 +120,7 @@ def test_energy_never_rises_from_one_iteration_to_the_next(
 def test_exactly_flat_start_beyond_the_onset_leaves_the_plane(
     request: pytest.FixtureRequest, name: str, load: float
 ) -> None:
-    mesh: DiskMesh = request.getfixturevalue(name)
+    mesh: Disk = request.getfixturevalue(name)
     problem = Problem(mesh)
     assert (mesh.x[:, 2] == 0).all()
     found = solve(problem, mesh.x, load)
@@ -137,7 +137,7 @@ def test_exactly_flat_start_beyond_the_onset_leaves_the_plane(
 def test_exactly_flat_start_below_the_onset_stays_in_the_plane(
     request: pytest.FixtureRequest, name: str
 ) -> None:
-    mesh: DiskMesh = request.getfixturevalue(name)
+    mesh: Disk = request.getfixturevalue(name)
     problem = Problem(mesh)
     found = solve(problem, mesh.x, 600.0)
     assert_minimum(found)
@@ -146,7 +146,7 @@ def test_exactly_flat_start_below_the_onset_stays_in_the_plane(
 
 @pytest.mark.parametrize("load", [852.0, 853.0, 854.0, 858.0])
 def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_iteration(
-    hexagon: DiskMesh, load: float
+    hexagon: Disk, load: float
 ) -> None:
     """Just beyond the onset the hexagon's saddle hardly feels in which direction it is."""
     problem = Problem(hexagon)
@@ -155,7 +155,7 @@ def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_iteration(
     assert found.iterations < 100
 
 
-def test_restart_from_a_minimum_stays_there(oval: DiskMesh, oval_problem: Problem) -> None:
+def test_restart_from_a_minimum_stays_there(oval: Disk, oval_problem: Problem) -> None:
     first = solve(oval_problem, shapes.crumpled(oval, 1e-3), 900.0)
     again = solve(oval_problem, first.shape.x, 900.0)
     assert again.iterations <= 1
@@ -163,7 +163,7 @@ def test_restart_from_a_minimum_stays_there(oval: DiskMesh, oval_problem: Proble
     assert np.abs(again.shape.x - first.shape.x).max() < 1e-7
 
 
-def test_only_the_loop_of_the_start_matters(oval: DiskMesh, oval_problem: Problem) -> None:
+def test_only_the_loop_of_the_start_matters(oval: Disk, oval_problem: Problem) -> None:
     start = shapes.crumpled(oval, 1e-3)
     other = start.copy()
     other[oval.interior] = 7.0
@@ -171,9 +171,7 @@ def test_only_the_loop_of_the_start_matters(oval: DiskMesh, oval_problem: Proble
     np.testing.assert_array_equal(one.shape.x, two.shape.x)
 
 
-def test_a_moved_start_ends_in_the_moved_minimum(
-    oval: DiskMesh, oval_problem: Problem
-) -> None:
+def test_a_moved_start_ends_in_the_moved_minimum(oval: Disk, oval_problem: Problem) -> None:
     start = shapes.crumpled(oval, 1e-3)
     moved = start @ shapes.rotation().T + [0.3, -0.2, 0.7]
     one, two = (solve(oval_problem, x, 900.0) for x in (start, moved))
@@ -181,9 +179,7 @@ def test_a_moved_start_ends_in_the_moved_minimum(
     assert equilibria.distance_up_to_motion(one.shape.x, two.shape.x) < 1e-6
 
 
-def test_slack_film_lets_the_loop_be_a_circle(
-    oval: DiskMesh, oval_problem: Problem
-) -> None:
+def test_slack_film_lets_the_loop_be_a_circle(oval: Disk, oval_problem: Problem) -> None:
     found = solve(oval_problem, shapes.crumpled(oval, 1e-3), 0.0)
     around = found.shape.x_loop
     radii = np.linalg.norm(around - around.mean(axis=0), axis=1)

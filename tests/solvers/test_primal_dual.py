@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, solve
 from eulerplateau.solvers.models import Settled
 from eulerplateau.solvers.primal_dual import settle
@@ -28,7 +28,7 @@ def settled(
 @pytest.mark.parametrize("load", [1.0, 500.0, 900.0, 1600.0])
 @pytest.mark.parametrize("turned", [False, True])
 def test_it_settles_by_itself_and_quadratically(
-    oval: DiskMesh, oval_problem: Problem, load: float, turned: bool
+    oval: Disk, oval_problem: Problem, load: float, turned: bool
 ) -> None:
     """From the minimum bent by a thousandth of the length, its tensions off by as much."""
     minimum = solve(oval_problem, load, shapes.crumpled(oval, 1e-3))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, Status
 from tests.helpers import equilibria, shapes, twins
 
@@ -13,7 +13,7 @@ LOAD = 700.0
 RNG = np.random.default_rng(4)
 
 
-def test_energies_are_those_of_the_twins(oval: DiskMesh, oval_problem: Problem) -> None:
+def test_energies_are_those_of_the_twins(oval: Disk, oval_problem: Problem) -> None:
     x = shapes.crumpled(oval, 0.02)
     shape = oval.shape.moved(x)
     record = oval_problem.equilibrium(shape, np.zeros(oval.n_b), LOAD, Status.CONVERGED)
@@ -24,7 +24,7 @@ def test_energies_are_those_of_the_twins(oval: DiskMesh, oval_problem: Problem) 
 
 
 def test_residual_is_the_imbalance_over_the_largest_of_the_three_forces(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     """With the gradients of the twins, by central differences of quartic polynomials."""
     x, lam = shapes.crumpled(oval, 0.02), 100 * RNG.standard_normal(oval.n_b)
@@ -48,7 +48,7 @@ def test_residual_is_the_imbalance_over_the_largest_of_the_three_forces(
 
 
 def test_residual_vanishes_at_an_equilibrium_and_says_by_how_much_one_is_missed(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     model = equilibria.planar(oval_problem, [300.0, LOAD])[-1]
     shape = equilibria.spanned(oval_problem, model.x)
@@ -62,7 +62,7 @@ def test_residual_vanishes_at_an_equilibrium_and_says_by_how_much_one_is_missed(
 
 
 def test_residual_does_not_depend_on_the_unit_of_energy(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     """At load 0 the film is slack: bending and tension alone, both linear in x."""
     x, lam = shapes.crumpled(oval, 0.02), 100 * RNG.standard_normal(oval.n_b)
@@ -73,7 +73,7 @@ def test_residual_does_not_depend_on_the_unit_of_energy(
 
 
 def test_rigid_motions_change_the_energy_by_less_than_1e_12_of_itself(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     model = equilibria.planar(oval_problem, [300.0, LOAD])[-1]
     shape = equilibria.spanned(oval_problem, model.x)
@@ -85,7 +85,7 @@ def test_rigid_motions_change_the_energy_by_less_than_1e_12_of_itself(
 
 
 def test_a_length_error_is_the_largest_strain_of_the_loop(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     assert oval_problem.length_error(oval.shape) < 1e-14
     longer = oval.shape.moved(1.25 * oval.x)
@@ -108,7 +108,7 @@ def test_energy_of_a_disk_converges_to_sigma_over_4_pi_plus_4_pi_squared() -> No
 
 
 def test_spring_film_of_an_unstructured_disk_has_that_energy_to_a_percent(
-    hexagon: DiskMesh,
+    hexagon: Disk,
 ) -> None:
     """2 sqrt 3 k is exact on equilateral triangles; Gmsh's are equilateral to a percent.
 

@@ -8,7 +8,7 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy, project_lengths, rigid_motions
 from eulerplateau.loop.lengths import jacobian
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, TangentModel, tangent_model
 from tests.helpers import equilibria, shapes
 from tests.helpers.equilibria import loop_energy
@@ -29,7 +29,7 @@ def energy_of(problem: Problem, x_loop: FloatArray) -> float:
 
 
 @pytest.fixture
-def bent(oval: DiskMesh, oval_problem: Problem) -> FloatArray:
+def bent(oval: Disk, oval_problem: Problem) -> FloatArray:
     """A loop in space that keeps its lengths and is no equilibrium."""
     found = project_lengths(oval_problem.loop, shapes.crumpled(oval, 0.004)[oval.loop])
     assert found is not None

@@ -8,7 +8,7 @@ from scipy.linalg import eigh
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import area
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, lowest_modes, solving, tangent_model
 from eulerplateau.solvers.equilibrium import (
     LENGTH_TOLERANCE,
@@ -34,13 +34,13 @@ def solve(problem: Problem, x: FloatArray, load: float) -> Equilibrium:
 
 
 @pytest.fixture(scope="module")
-def mesh() -> DiskMesh:
+def mesh() -> Disk:
     return soap_films.irregular_disk(8)
 
 
 @pytest.mark.parametrize("load", LOADS)
 def test_same_film_is_reached_from_flat_rough_and_turned_starts(
-    mesh: DiskMesh, load: float
+    mesh: Disk, load: float
 ) -> None:
     problem = Problem(mesh, "area")
     rough = shapes.crumpled(mesh, 2e-3) * OVAL
@@ -55,9 +55,7 @@ def test_same_film_is_reached_from_flat_rough_and_turned_starts(
 
 
 @pytest.mark.parametrize("load", LOADS)
-def test_flat_film_is_the_one_that_is_kept_in_its_plane(
-    mesh: DiskMesh, load: float
-) -> None:
+def test_flat_film_is_the_one_that_is_kept_in_its_plane(mesh: Disk, load: float) -> None:
     space, plane = (
         solve(Problem(mesh, "area", in_plane=plane), mesh.x * OVAL, load)
         for plane in (False, True)
@@ -67,7 +65,7 @@ def test_flat_film_is_the_one_that_is_kept_in_its_plane(
     assert np.abs(space.shape.x[:, 2]).max() < 1e-12
 
 
-def test_energy_rises_with_the_tension_as_fast_as_the_film_is_large(mesh: DiskMesh) -> None:
+def test_energy_rises_with_the_tension_as_fast_as_the_film_is_large(mesh: Disk) -> None:
     """dE/d sigma_hat = area along equilibria; central differences converge to it."""
     problem = Problem(mesh, "area")
     here = solve(problem, mesh.x * OVAL, 1700.0)
@@ -78,11 +76,11 @@ def test_energy_rises_with_the_tension_as_fast_as_the_film_is_large(mesh: DiskMe
     assert shapes.fitted_order(steps, errors) == pytest.approx(2.0, abs=0.1)
 
 
-def test_rigid_motions_and_units_change_nothing(mesh: DiskMesh) -> None:
+def test_rigid_motions_and_units_change_nothing(mesh: Disk) -> None:
     start = shapes.crumpled(mesh, 1e-3) * OVAL
     plain = solve(Problem(mesh, "area"), start, 1700.0)
     turn = shapes.rotation()
-    moved = DiskMesh.from_triangles(4 * mesh.x @ turn.T, mesh.triangles)
+    moved = Disk.from_triangles(4 * mesh.x @ turn.T, mesh.triangles)
     other = solve(Problem(moved, "area"), start @ turn.T + 0.5, 1700.0)
     assert other.energy == pytest.approx(plain.energy, rel=1e-11)
     assert other.lowest_eigenvalue == pytest.approx(plain.lowest_eigenvalue, rel=1e-8)
@@ -97,14 +95,14 @@ def test_long_way_leaves_good_triangles_and_the_same_loop() -> None:
     assert not np.array_equal(found.shape.triangles, mesh.triangles)
     tiling = area(mesh).tiling(found.shape.triangles)
     assert tiling.sides(found.shape.x).smallest_angle > 12
-    again = DiskMesh.from_triangles(found.shape.x, found.shape.triangles)
+    again = Disk.from_triangles(found.shape.x, found.shape.triangles)
     np.testing.assert_allclose(again.rest_lengths, mesh.rest_lengths, rtol=1e-8)
     start = int(np.flatnonzero(again.loop == mesh.loop[0])[0])
     np.testing.assert_array_equal(np.roll(again.loop, -start), mesh.loop)
 
 
 @pytest.mark.parametrize("load", LOADS)
-def test_film_at_rest_has_no_mean_curvature_inside(mesh: DiskMesh, load: float) -> None:
+def test_film_at_rest_has_no_mean_curvature_inside(mesh: Disk, load: float) -> None:
     """The area's gradient vanishes at every interior vertex of a flat film: all of it."""
     problem = Problem(mesh, "area")
     found = solve(problem, shapes.crumpled(mesh, 1e-3) * OVAL, load)
@@ -114,7 +112,7 @@ def test_film_at_rest_has_no_mean_curvature_inside(mesh: DiskMesh, load: float) 
 
 
 def test_softest_mode_of_the_two_lobed_film_twists_it_across_its_plane(
-    mesh: DiskMesh,
+    mesh: Disk,
 ) -> None:
     problem = Problem(mesh, "area")
     found = solve(problem, mesh.x * OVAL, 1750.0)
@@ -128,7 +126,7 @@ def test_softest_mode_of_the_two_lobed_film_twists_it_across_its_plane(
     assert abs(alike.sum()) > 0.95 * np.abs(alike).sum()
 
 
-def thresholds(mesh: DiskMesh) -> tuple[FloatArray, FloatArray]:
+def thresholds(mesh: Disk) -> tuple[FloatArray, FloatArray]:
     """Loads at which the disk is neutral, in the plane and across it, ascending.
 
     On the disk's branch neither shape nor basis changes and the Hessian is linear in the

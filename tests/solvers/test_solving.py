@@ -10,7 +10,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Equilibrium, Problem, Status, solving, sweep
 
 Starts = list[tuple[Shape, FloatArray | None]]
@@ -49,7 +49,7 @@ def pretend(monkeypatch: pytest.MonkeyPatch) -> Callable[[list[Status]], Starts]
 
 
 def test_every_load_starts_from_the_last_shape_and_the_last_tensions(
-    oval: DiskMesh, oval_problem: Problem, pretend: Callable[[list[Status]], Starts]
+    oval: Disk, oval_problem: Problem, pretend: Callable[[list[Status]], Starts]
 ) -> None:
     starts = pretend(3 * [Status.CONVERGED])
     found = list(sweep(oval_problem, [3.0, 5.0, 4.0], oval.x))
@@ -62,7 +62,7 @@ def test_every_load_starts_from_the_last_shape_and_the_last_tensions(
 
 
 def test_shape_that_is_not_finite_is_recorded_and_not_started_from(
-    oval: DiskMesh, oval_problem: Problem, pretend: Callable[[list[Status]], Starts]
+    oval: Disk, oval_problem: Problem, pretend: Callable[[list[Status]], Starts]
 ) -> None:
     statuses = [Status.CONVERGED, Status.NOT_FINITE, Status.CONVERGED]
     starts = pretend(statuses)
@@ -73,7 +73,7 @@ def test_shape_that_is_not_finite_is_recorded_and_not_started_from(
 
 
 def test_next_start_is_the_last_finite_shape_converged_or_not(
-    oval: DiskMesh, oval_problem: Problem, pretend: Callable[[list[Status]], Starts]
+    oval: Disk, oval_problem: Problem, pretend: Callable[[list[Status]], Starts]
 ) -> None:
     """STALLED is a shape to go on from; one that is not finite is none."""
     statuses = [

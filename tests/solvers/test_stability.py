@@ -7,7 +7,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.load import SPRING_TENSION
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import (
     Problem,
     Stability,
@@ -38,7 +38,7 @@ def within(n: int) -> float:
     return 2 * n**2 * (n**2 - 1) ** 2 / (n**2 + 1) * R4
 
 
-def disk_problem(rings: int) -> tuple[DiskMesh, Problem]:
+def disk_problem(rings: int) -> tuple[Disk, Problem]:
     """A disk whose film is exactly the Dirichlet energy; the load is sigma_hat."""
     mesh = shapes.mesh_of(*shapes.disk_points(rings))
     return mesh, Problem(mesh, "dirichlet")
@@ -157,7 +157,7 @@ def near_zero(model: TangentModel, x: FloatArray, where: str, n: int) -> float:
     return float(values[np.argmax(overlap)])
 
 
-def onset(mesh: DiskMesh) -> float:
+def onset(mesh: Disk) -> float:
     """Load k at which the planar film first gives way, by bisection."""
     problem, low, high = Problem(mesh), 700.0, 900.0
     x = equilibria.planar(problem, [100, 300, 500, low])[-1].x

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers.problem import Problem
 from scripts.studies.error_vs_time import evolver
 from scripts.studies.error_vs_time.evolver_files import (
@@ -66,13 +66,13 @@ def read(text: str) -> Parsed:
 
 
 @pytest.fixture(scope="module")
-def bent(oval: DiskMesh) -> FloatArray:
+def bent(oval: Disk) -> FloatArray:
     """The oval, turned out of its plane."""
     return (oval.x + [0.0, 0.0, 0.5] * oval.x[:, [2, 2, 0]]) @ shapes.rotation()
 
 
 def test_film_datafile_holds_the_mesh_and_the_start_to_the_last_bit(
-    oval: DiskMesh, bent: FloatArray
+    oval: Disk, bent: FloatArray
 ) -> None:
     film = read(film_datafile(oval, bent, SIGMA).text)
     assert np.array_equal(film.x, bent)
@@ -87,7 +87,7 @@ def test_film_datafile_holds_the_mesh_and_the_start_to_the_last_bit(
 
 
 def test_every_loop_edge_is_fixed_at_its_own_rest_length_and_no_other_edge(
-    oval: DiskMesh, bent: FloatArray
+    oval: Disk, bent: FloatArray
 ) -> None:
     film = read(film_datafile(oval, bent, SIGMA).text)
     follower = dict(zip(oval.loop.tolist(), np.roll(oval.loop, -1).tolist(), strict=True))
@@ -101,14 +101,12 @@ def test_every_loop_edge_is_fixed_at_its_own_rest_length_and_no_other_edge(
     assert [seen[v] for v in oval.loop.tolist()] == oval.rest_lengths.tolist()
 
 
-def test_bending_belongs_to_the_loop_vertices(oval: DiskMesh, bent: FloatArray) -> None:
+def test_bending_belongs_to_the_loop_vertices(oval: Disk, bent: FloatArray) -> None:
     film = read(film_datafile(oval, bent, SIGMA).text)
     assert np.flatnonzero(film.marked).tolist() == sorted(oval.loop.tolist())
 
 
-def test_moments_are_fixed_where_the_start_has_them(
-    oval: DiskMesh, bent: FloatArray
-) -> None:
+def test_moments_are_fixed_where_the_start_has_them(oval: Disk, bent: FloatArray) -> None:
     moved = bent + np.array([0.1, 0.2, 0.3])
     fixed = read(film_datafile(oval, moved, SIGMA).text).fixed
     shifts = [fixed[f"shift_{axis}"] for axis in "xyz"]
@@ -116,7 +114,7 @@ def test_moments_are_fixed_where_the_start_has_them(
     assert [fixed[f"turn_{axis}"] for axis in "xyz"] == [0.0, 0.0, 0.0]
 
 
-def test_string_datafile_is_the_loop_in_order(oval: DiskMesh) -> None:
+def test_string_datafile_is_the_loop_in_order(oval: Disk) -> None:
     data = string_datafile(oval, oval.x, SIGMA)
     string = read(data.text)
     assert np.array_equal(string.x, oval.x[oval.loop, :2])
@@ -137,9 +135,7 @@ def output(ids: list[int], x: FloatArray, energy: float, decrease: float) -> str
     return "\n".join([*rows, "VmHWM:\t    2048 kB", "Enter command: q"])
 
 
-def test_result_is_read_back_in_the_order_of_the_loop(
-    oval: DiskMesh, bent: FloatArray
-) -> None:
+def test_result_is_read_back_in_the_order_of_the_loop(oval: Disk, bent: FloatArray) -> None:
     """Evolver lists vertices in an order of its own."""
     data = film_datafile(oval, bent, SIGMA)
     mixed = np.random.default_rng(0).permutation(oval.loop)
@@ -152,7 +148,7 @@ def test_result_is_read_back_in_the_order_of_the_loop(
     ("decrease", "converged"), [(0.0, True), (1e-12, True), (1.0, False), (-1.0, False)]
 )
 def test_converged_is_what_no_longer_changes(
-    oval: DiskMesh, decrease: float, converged: bool
+    oval: Disk, decrease: float, converged: bool
 ) -> None:
     data = string_datafile(oval, oval.x, SIGMA)
     ids = list(range(1, oval.n_b + 1))
@@ -161,13 +157,13 @@ def test_converged_is_what_no_longer_changes(
 
 
 @pytest.mark.parametrize("printed", ["", "ERROR 1234", "RESULT (NaN) 3 (NaN)"])
-def test_output_without_a_result_is_refused(oval: DiskMesh, printed: str) -> None:
+def test_output_without_a_result_is_refused(oval: Disk, printed: str) -> None:
     with pytest.raises(ValueError, match="Evolver"):
         evolver.parse(printed, string_datafile(oval, oval.x, SIGMA))
 
 
 def test_without_evolver_there_is_a_clear_error(
-    oval: DiskMesh, monkeypatch: pytest.MonkeyPatch
+    oval: Disk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", "")
     assert evolver.find_evolver() is None
@@ -184,7 +180,7 @@ def evolver_bending(x: FloatArray) -> float:
     return float(np.sum((2 * u + u**2 / 3) / ((s + np.roll(s, 1)) / 2)))
 
 
-def bending(mesh: DiskMesh) -> float:
+def bending(mesh: Disk) -> float:
     """The bending energy of a mesh at rest."""
     return Problem(mesh).bending_energy(mesh.shape)[0]
 

@@ -20,7 +20,7 @@ def committed() -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def trial(against: str, load: float, case: cases.Disk) -> trials.Trial:
+def trial(against: str, load: float, case: cases.DisplacedDisk) -> trials.Trial:
     return trials.Trial(
         "any", "any", "springs", load, case, against, twin=case, solver="newton"
     )

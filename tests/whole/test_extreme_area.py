@@ -19,7 +19,7 @@ LOADS = (1000.0, 1700.0)
 # How far a loop that may slide along itself moves the energy: its mesh's error, relative.
 SLIDING = 1e-8
 
-SAME: dict[str, Callable[[cases.Disk], cases.Disk]] = {
+SAME: dict[str, Callable[[cases.DisplacedDisk], cases.DisplacedDisk]] = {
     "nanometres": partial(cases.scaled, factor=1e-9),
     "gigametres": partial(cases.scaled, factor=1e9),
     "rotated": cases.rotated,
@@ -32,7 +32,7 @@ SAME: dict[str, Callable[[cases.Disk], cases.Disk]] = {
 @pytest.mark.parametrize("change", SAME)
 @pytest.mark.parametrize("load", LOADS)
 def test_otherwise_given_all_agrees_to_rounding(
-    load: float, change: str, make: Callable[[], cases.Disk]
+    load: float, change: str, make: Callable[[], cases.DisplacedDisk]
 ) -> None:
     one = cases.run(make(), "area", load)
     assert one.found is not None
@@ -52,7 +52,7 @@ def test_powers_of_two_change_not_one_bit(power: int) -> None:
 @pytest.mark.parametrize("make", [cases.needle, cases.sliver])
 @pytest.mark.parametrize("load", LOADS)
 def test_sliver_of_1e8_changes_nothing(
-    load: float, make: Callable[[cases.Disk, float], cases.Disk]
+    load: float, make: Callable[[cases.DisplacedDisk, float], cases.DisplacedDisk]
 ) -> None:
     """A film of true area does not know how its mesh was given: slivers are mended."""
     one = cases.run(oval(), "area", load).found
@@ -83,7 +83,7 @@ def test_crumpled_start_comes_to_the_only_minimum(load: float, size: float) -> N
     ids=["crossed", "doubly covered", "a point", "infinite"],
 )  # fmt: skip
 def test_start_without_a_disk_between_its_strands_is_not_called_converged(
-    start: Callable[[cases.Disk], cases.Disk], solver: str
+    start: Callable[[cases.DisplacedDisk], cases.DisplacedDisk], solver: str
 ) -> None:
     found = cases.run(start(oval(4)), "area", 1000.0, solver).found
     assert found is not None

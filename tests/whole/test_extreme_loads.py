@@ -8,7 +8,7 @@ import pytest
 from eulerplateau.errors import SpecError
 from eulerplateau.loop.lengths import close_with_lengths
 from eulerplateau.loop.loop import largest_turning
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.settings import validate
 from eulerplateau.solvers import Equilibrium, Problem, Status, solve
@@ -152,7 +152,7 @@ def test_failures_keep_their_own_status() -> None:
         assert problem.classified(found).status is status
 
 
-def test_papers_mesh_carries_a_load_of_1e4_and_none_of_1e5(elongated: DiskMesh) -> None:
+def test_papers_mesh_carries_a_load_of_1e4_and_none_of_1e5(elongated: Disk) -> None:
     start = cases.disk(elongated.x, elongated.triangles)
     for load, status in ((1e4, Status.CONVERGED), (1e5, Status.UNRESOLVED)):
         assert cases.run(start, "springs", load).word == status.value

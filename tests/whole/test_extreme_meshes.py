@@ -12,7 +12,9 @@ from tests.helpers.extremes import FIXED, TENSIONS, assert_same, cases, hexagon,
 RATIOS = (1e-2, 1e-4, 1e-8)
 
 
-def found(case: cases.Disk, film: str, load: float, solver: str = "newton") -> Equilibrium:
+def found(
+    case: cases.DisplacedDisk, film: str, load: float, solver: str = "newton"
+) -> Equilibrium:
     result = cases.run(case, film, load, solver).found
     assert result is not None
     return result

@@ -11,7 +11,7 @@ import pytest
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from tests.helpers.extremes import FIXED, cases, oval
 
-Change = Callable[[cases.Disk], cases.Disk]
+Change = Callable[[cases.DisplacedDisk], cases.DisplacedDisk]
 STARTS: dict[str, Change] = {
     "crumpled a little": partial(cases.crumpled, size=0.05),
     "crumpled beyond recognition": partial(cases.crumpled, size=0.5),
@@ -22,7 +22,7 @@ STARTS: dict[str, Change] = {
 NOT_NUMBERS = (np.nan, np.inf, -np.inf)
 
 
-def found(case: cases.Disk, film: str, load: float, solver: str) -> Equilibrium:
+def found(case: cases.DisplacedDisk, film: str, load: float, solver: str) -> Equilibrium:
     result = cases.run(case, film, load, solver).found
     assert result is not None
     return result
@@ -92,7 +92,9 @@ def test_start_on_a_line_is_reached_from_or_not_called_converged(film: str) -> N
     """No direction leads off the line; and what has no area has no axes."""
     case = cases.started_as(oval(), 0.0)
     displacement = -oval().mesh.x * [0.0, 1.0, 1.0]
-    outcome = cases.run(cases.Disk(case.points, case.triangles, displacement), film, 300.0)
+    outcome = cases.run(
+        cases.DisplacedDisk(case.points, case.triangles, displacement), film, 300.0
+    )
     assert outcome.word == "stalled"
     assert outcome.measures is not None
     assert np.isnan(outcome.measures["aspect"])

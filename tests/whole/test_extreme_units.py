@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from eulerplateau.mesh import read_mesh
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers.equilibria import assert_same_bits
 from tests.helpers.extremes import EPS, FIXED, TENSIONS, assert_same, cases, hexagon, oval
 
-Change = Callable[[cases.Disk], cases.Disk]
+Change = Callable[[cases.DisplacedDisk], cases.DisplacedDisk]
 UNITS: dict[str, Change] = {
     "nanometres": partial(cases.scaled, factor=1e-9),
     "gigametres": partial(cases.scaled, factor=1e9),
@@ -55,7 +55,7 @@ def test_in_other_units_all_agrees_to_rounding(
 @pytest.mark.parametrize("film", FIXED)
 @pytest.mark.parametrize("tension", TENSIONS)
 def test_turned_moved_and_renumbered_all_agrees_to_rounding(
-    make: Callable[[], cases.Disk], film: str, tension: float, change: str
+    make: Callable[[], cases.DisplacedDisk], film: str, tension: float, change: str
 ) -> None:
     load = cases.own_load(film, tension)
     assert_converged_alike(
@@ -68,7 +68,7 @@ def test_turned_moved_and_renumbered_all_agrees_to_rounding(
 @pytest.mark.parametrize("film", FIXED)
 @pytest.mark.parametrize("tension", TENSIONS)
 def test_shuffled_vertices_triangles_and_corners_all_agrees_to_rounding(
-    make: Callable[[], cases.Disk], film: str, tension: float, seed: int
+    make: Callable[[], cases.DisplacedDisk], film: str, tension: float, seed: int
 ) -> None:
     load = cases.own_load(film, tension)
     shuffled = cases.renumbered(make(), seed)
@@ -111,7 +111,7 @@ def test_offset_that_costs_more_than_the_promised_digits_is_warned_of_once(
     """100 eps D passes 1e-11 at D = 450."""
     with caplog.at_level(logging.WARNING):
         case = cases.offset(oval(), sizes)
-        DiskMesh.from_triangles(case.points, case.triangles)
+        Disk.from_triangles(case.points, case.triangles)
     assert len(caplog.records) == warned
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.motions import rigid_motions
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.solvers import Problem, solve, stability
 from tests.helpers import equilibria, shapes
@@ -46,14 +46,14 @@ def whole_film_index(
 
 
 @pytest.fixture(scope="module")
-def long_lattice() -> DiskMesh:
+def long_lattice() -> Disk:
     """A hexagonal lattice stretched to twice its length: its modes come one by one."""
     points, triangles = shapes.hexagon_points(5)
     return shapes.mesh_of(points * [2.0, 1.0], triangles)
 
 
 def test_morse_index_of_planar_films_is_that_of_the_whole_film(
-    long_lattice: DiskMesh,
+    long_lattice: Disk,
 ) -> None:
     """Along the planar branch: stable, then with one unstable mode, then with two."""
     problem, met = Problem(long_lattice), []
@@ -90,7 +90,7 @@ def test_morse_index_of_a_regular_hexagon_jumps_by_two_and_that_of_its_saddle_is
 
 
 def test_morse_index_of_films_in_space_is_that_of_the_whole_film(
-    oval: DiskMesh, oval_problem: Problem
+    oval: Disk, oval_problem: Problem
 ) -> None:
     """A stable film followed down in load, where it turns unstable once and again."""
     load, met = 1200.0, []

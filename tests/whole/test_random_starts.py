@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, solve
 
 STARTS = 200
 
 
-def random_start(mesh: DiskMesh, seed: int) -> NDArray[np.float64]:
+def random_start(mesh: Disk, seed: int) -> NDArray[np.float64]:
     """Return one of four kinds of start: rough, crumpled, noise, a random smooth knot."""
     rng = np.random.default_rng(seed)
     x = mesh.x.copy()

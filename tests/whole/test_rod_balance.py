@@ -23,20 +23,20 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import BranchPoint, FilmFamily
 from eulerplateau.loop import Loop
 from eulerplateau.mesh.curvature import LoopFrame, loop_frame
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes, soap_films
 
 RINGS = (6, 9, 13)
 ANGLES = (0.0, 0.35, 0.7)
 
 
-def two_lobed(mesh: DiskMesh, angle: float) -> BranchPoint:
+def two_lobed(mesh: Disk, angle: float) -> BranchPoint:
     planar = soap_films.two_lobed(mesh, 1750.0, angle)
     special = soap_films.twist_point(planar)
     return soap_films.twisted_from_two_lobed(special, 1700.0)
 
 
-def disk(mesh: DiskMesh, angle: float) -> BranchPoint:
+def disk(mesh: Disk, angle: float) -> BranchPoint:
     return soap_films.twisted_disk(mesh, 0.03, angle)
 
 
@@ -54,7 +54,7 @@ def stress_resultant(point: BranchPoint) -> FloatArray:
     return shear + point.model.tensions[:, None] * tangent
 
 
-def frame_of(point: BranchPoint, mesh: DiskMesh) -> LoopFrame:
+def frame_of(point: BranchPoint, mesh: Disk) -> LoopFrame:
     return loop_frame(soap_films.mesh_of(point, mesh), soap_films.shape(point).x)
 
 
@@ -72,7 +72,7 @@ def imbalance(point: BranchPoint, frame: LoopFrame) -> tuple[float, float]:
 @pytest.mark.parametrize("leave", [two_lobed, disk])
 @pytest.mark.parametrize("even", [True, False], ids=["even", "uneven"])
 def test_rod_balances_the_films_pull_at_second_order(
-    leave: Callable[[DiskMesh, float], BranchPoint], even: bool
+    leave: Callable[[Disk, float], BranchPoint], even: bool
 ) -> None:
     """On the branches that leave the two-lobed film, and the disk at 96 pi^3; and no net
     normal curvature, to the second order at least, over three ways the film may lie."""

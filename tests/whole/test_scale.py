@@ -13,24 +13,24 @@ from scipy.sparse.csgraph import connected_components
 from eulerplateau.film.condensation import condense
 from eulerplateau.film.dissection import dissect
 from eulerplateau.film.quadratic import springs
-from eulerplateau.mesh.disk import DiskMesh
+from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes
 
 
 @pytest.fixture(scope="module")
-def large() -> DiskMesh:
+def large() -> Disk:
     """2,791 vertices: dissected several times over."""
     return shapes.mesh_of(*shapes.disk_points(30, jitter=0.2))
 
 
-def test_parts_hold_every_interior_vertex_once(large: DiskMesh) -> None:
+def test_parts_hold_every_interior_vertex_once(large: Disk) -> None:
     graph = springs(large).laplacian().tocsr()
     parts = dissect(graph, large.loop, large.interior)
     assert len(parts) > 10
     np.testing.assert_array_equal(np.sort(np.concatenate(parts)), large.interior)
 
 
-def test_what_is_eliminated_first_falls_apart_into_small_pieces(large: DiskMesh) -> None:
+def test_what_is_eliminated_first_falls_apart_into_small_pieces(large: Disk) -> None:
     graph = springs(large).laplacian().tocsr()
     parts = dissect(graph, large.loop, large.interior)
     # The last part cuts the film in two, and so on down: without the last 2^k - 1 parts
@@ -41,7 +41,7 @@ def test_what_is_eliminated_first_falls_apart_into_small_pieces(large: DiskMesh)
         assert np.bincount(piece).max() < 1.3 / 2**k * len(large.interior)
 
 
-def test_film_is_relaxed_and_stiffness_is_its_pull_on_the_loop(large: DiskMesh) -> None:
+def test_film_is_relaxed_and_stiffness_is_its_pull_on_the_loop(large: Disk) -> None:
     laplacian = springs(large).laplacian()
     condensed = condense(laplacian, large.loop, large.interior)
     around = shapes.crumpled(large, 0.1)[large.loop]

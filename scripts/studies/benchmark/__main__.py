@@ -17,7 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import backward_differences
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import Disk
 from eulerplateau.solvers import SOLVERS, Equilibrium, Problem, displaced, solve
 from scripts.studies.benchmark.report import draw, report, summary, write_csv
 from scripts.studies.common import make_mesh
@@ -137,7 +137,7 @@ def measure(size: int, solver: str) -> dict[str, Any]:
     }
 
 
-def hexagon(size: int) -> DiskMesh:
+def hexagon(size: int) -> Disk:
     """Return the x2.0 hexagon with about `size` vertices."""
     polygon = {"kind": "stretched-hexagon", "factor": 2.0}
     return make_mesh(polygon=polygon, vertices=size, algorithm=6)

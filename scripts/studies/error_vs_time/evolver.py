@@ -17,7 +17,7 @@ from threading import Timer
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import Disk
 from scripts.studies.error_vs_time.evolver_files import (
     LAST_DECREASE,
     Datafile,
@@ -120,10 +120,10 @@ def parse(printed: str, data: Datafile) -> EvolverRun:
 
 
 def relax(
-    meshes: Sequence[DiskMesh],
+    meshes: Sequence[Disk],
     x: FloatArray,
     sigma_hat: float,
-    prolong: Callable[[DiskMesh, FloatArray, DiskMesh, bool], FloatArray],
+    prolong: Callable[[Disk, FloatArray, Disk, bool], FloatArray],
     *,
     in_plane: bool,
     weigh: bool = False,

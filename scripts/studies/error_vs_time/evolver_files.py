@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import Disk
 from eulerplateau.mesh.triangles import directed_edges
 
 # A Newton step that lowers the energy by less than this share is the last: the error left
@@ -49,7 +49,7 @@ class Datafile:
     in_plane: bool
 
 
-def film_datafile(mesh: DiskMesh, x: FloatArray, sigma_hat: float) -> Datafile:
+def film_datafile(mesh: Disk, x: FloatArray, sigma_hat: float) -> Datafile:
     """Describe an area film with the rest lengths of `mesh`, at x (n_v, 3)."""
     edges, sides = _edges_and_sides(mesh.triangles)
     on_loop, loop_edge = np.zeros(mesh.n_v, dtype=bool), np.full(len(edges), -1)
@@ -67,7 +67,7 @@ def film_datafile(mesh: DiskMesh, x: FloatArray, sigma_hat: float) -> Datafile:
     return Datafile("\n".join([*rows, "read", ""]), mesh.loop + 1, in_plane=False)
 
 
-def string_datafile(mesh: DiskMesh, x: FloatArray, sigma_hat: float) -> Datafile:
+def string_datafile(mesh: Disk, x: FloatArray, sigma_hat: float) -> Datafile:
     """Describe the loop alone, in the plane, with sigma times its polygon's area.
 
     Of x (n_v, 3) the loop's first two coordinates count. By Stokes the area is the integral
@@ -144,7 +144,7 @@ def _script(in_plane: bool, prepare: list[str], step: str, repeat_while: str) ->
     return "\n".join(rows)
 
 
-def _header(mesh: DiskMesh) -> list[str]:
+def _header(mesh: Disk) -> list[str]:
     return [
         "define edge attribute sqcurve_string_mark integer",
         "define vertex attribute on_loop integer",

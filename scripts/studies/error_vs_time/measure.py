@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh import DiskMesh, Shape
+from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers import Equilibrium, Problem, Status, solve
 from scripts.studies.error_vs_time.scenes import (
     Scene,
@@ -31,7 +31,7 @@ REPEATS = 5
 ENOUGH = 10.0
 
 
-def repeated(meshes: list[DiskMesh], scene: Scene, solver: str) -> Iterator[dict[str, Any]]:
+def repeated(meshes: list[Disk], scene: Scene, solver: str) -> Iterator[dict[str, Any]]:
     """Yield what each repeat of a point cost and came to."""
     # Loads the compiled kernels and whatever is imported late.
     solved([lattice(3, 1.0)], replace(scene, load=1.0, threshold=None), solver)
@@ -66,7 +66,7 @@ def timed(
 
 
 def solved(
-    meshes: list[DiskMesh], scene: Scene, solver: str
+    meshes: list[Disk], scene: Scene, solver: str
 ) -> tuple[Equilibrium | tuple[float, int], float, float]:
     """Return what is found on the last mesh, and the wall seconds of set-up and solving.
 
@@ -116,7 +116,7 @@ def saddle_in_plane(problem: Problem, start: Shape, load: float) -> Equilibrium:
 
 
 def what(
-    scene: Scene, mesh: DiskMesh, found: Equilibrium | tuple[float, int]
+    scene: Scene, mesh: Disk, found: Equilibrium | tuple[float, int]
 ) -> dict[str, Any]:
     """Return the part of a record that says what was found, not what it cost."""
     if isinstance(found, tuple):

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import Disk
 from scripts.studies.error_vs_time.conformal import ladder, mesh_free, unknowns
 from scripts.studies.error_vs_time.measure import ENOUGH
 from scripts.studies.error_vs_time.points import TOO_SLOW, Place, as_measurement, summarise
@@ -72,14 +72,14 @@ def run_point(
     return [json.loads(line) for line in printed.splitlines()]
 
 
-def write_mesh(path: Path, mesh: DiskMesh) -> None:
+def write_mesh(path: Path, mesh: Disk) -> None:
     """Hand a mesh to another process, to the last bit."""
     np.savez(
         path, x=mesh.x, triangles=mesh.triangles, loop=mesh.loop, rest=mesh.rest_lengths
     )
 
 
-def read_mesh(path: Path) -> DiskMesh:
+def read_mesh(path: Path) -> Disk:
     """Return the mesh that `write_mesh` wrote."""
     data = np.load(path)
-    return DiskMesh(data["x"], data["triangles"], data["loop"], data["rest"], 1.0)
+    return Disk(data["x"], data["triangles"], data["loop"], data["rest"], 1.0)

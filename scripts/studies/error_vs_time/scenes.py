@@ -19,7 +19,7 @@ from scipy.optimize import minimize_scalar
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import PlanarFilm, planar_film
 from eulerplateau.film import make_film
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import Disk
 from eulerplateau.mesh.polygon import ellipse, stretched_hexagon
 from scripts.studies.common import make_mesh
 
@@ -71,7 +71,7 @@ class Scene:
         """The exact energy or threshold, None where neither is known."""
         return self.threshold if self.exact is None else self.exact.energy
 
-    def mesh(self, kind: str, loop_edges: int) -> DiskMesh:
+    def mesh(self, kind: str, loop_edges: int) -> Disk:
         """Return the rest mesh of a kind with so many loop edges.
 
         "uniform", "graded", "lattice", or "fan": one vertex inside, which is more than a
@@ -88,7 +88,7 @@ class Scene:
         grading = GRADING if kind == "graded" else 1.0
         return make_mesh(polygon=polygon, edge_length=edge, grading=grading)
 
-    def start(self, mesh: DiskMesh) -> FloatArray:
+    def start(self, mesh: Disk) -> FloatArray:
         """Return every solver's start (n_v, 3): the rest mesh, bent out of its plane."""
         x = mesh.x.copy()
         if not self.in_plane:
@@ -99,7 +99,7 @@ class Scene:
 _planar_film = cache(planar_film)
 
 
-def fan(corners: FloatArray) -> DiskMesh:
+def fan(corners: FloatArray) -> Disk:
     """Return the polygon (n, 2) with one vertex inside, at its mean."""
     n = len(corners)
     points = np.zeros((n + 1, 3))
@@ -107,7 +107,7 @@ def fan(corners: FloatArray) -> DiskMesh:
     points[n, :2] = corners.mean(axis=0)
     v = np.arange(n)
     rim = np.column_stack([v, (v + 1) % n, np.full(n, n)])
-    return DiskMesh.from_triangles(points, rim)
+    return Disk.from_triangles(points, rim)
 
 
 def chain(polygon: dict[str, Any], loop_edges: int) -> FloatArray:
@@ -139,7 +139,7 @@ def lobed(n: int, loop_edges: int) -> FloatArray:
     return np.stack([np.interp(places, length, curve[:, d]) for d in range(2)], axis=1)
 
 
-def lattice(parts: int, factor: float) -> DiskMesh:
+def lattice(parts: int, factor: float) -> Disk:
     """Return the triangular lattice in a hexagon, every side in `parts`, then stretched.
 
     On nested lattices spring films have a limit.
@@ -153,12 +153,10 @@ def lattice(parts: int, factor: float) -> DiskMesh:
     a, b, c, d = (number[i + parts + di, j + parts + dj] for di, dj in steps)
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, d, b], axis=1)])
     whole = (triangles >= 0).all(axis=1)
-    return DiskMesh.from_triangles(x * (factor, 1.0, 1.0), triangles[whole])
+    return Disk.from_triangles(x * (factor, 1.0, 1.0), triangles[whole])
 
 
-def prolong(
-    coarse: DiskMesh, loop: FloatArray, fine: DiskMesh, in_plane: bool
-) -> FloatArray:
+def prolong(coarse: Disk, loop: FloatArray, fine: Disk, in_plane: bool) -> FloatArray:
     """Return a shape (n_v, 3) on `fine` with the shape of `loop` (n_b, 3) on `coarse`.
 
     The loop is a periodic cubic spline in the arc length from its first vertex, which both

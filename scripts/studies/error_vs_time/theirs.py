@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import Disk
 from scripts.studies.error_vs_time.evolver import EvolverRun, relax, run_evolver
 from scripts.studies.error_vs_time.evolver_files import (
     film_datafile,
@@ -22,9 +22,7 @@ from scripts.studies.error_vs_time.records import COARSE_TO_FINE, Measurement
 from scripts.studies.error_vs_time.scenes import Scene, gyration, prolong
 
 
-def measure_evolver(
-    scene: Scene, kind: str, meshes: list[DiskMesh]
-) -> Iterator[Measurement]:
+def measure_evolver(scene: Scene, kind: str, meshes: list[Disk]) -> Iterator[Measurement]:
     """Yield Evolver's repeats, directly on each mesh and coarse to fine."""
     describe = string_datafile if scene.in_plane else film_datafile
     for name in ("evolver", f"evolver{COARSE_TO_FINE}"):
@@ -53,7 +51,7 @@ def measure_evolver(
 
 
 def evolver_record(
-    scene: Scene, sequence: list[DiskMesh], repeat: int, reading: float
+    scene: Scene, sequence: list[Disk], repeat: int, reading: float
 ) -> dict[str, Any]:
     """Run Evolver once; its memory is asked for in the first repeat only."""
     x = scene.start(sequence[0])
@@ -68,7 +66,7 @@ def evolver_record(
 
 
 def as_record(
-    scene: Scene, mesh: DiskMesh, run: EvolverRun, repeat: int, reading: float
+    scene: Scene, mesh: Disk, run: EvolverRun, repeat: int, reading: float
 ) -> dict[str, Any]:
     """Return Evolver's run as a record; `reading`: seconds of starting and reading."""
     reached = math.nan

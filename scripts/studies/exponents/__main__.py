@@ -8,7 +8,7 @@ from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import explore, fit_power
-from eulerplateau.mesh import Measurer, load_mesh
+from eulerplateau.mesh import Measurer, read_disk
 from eulerplateau.solvers import Problem, sweep
 from scripts.studies.common import ROOT
 
@@ -24,7 +24,7 @@ def main() -> None:
     click.echo("| film | quantity | n, onset fitted | n, onset from the eigenvalue |")
     click.echo("|---|---|---:|---:|")
     for film, file in FILMS.items():
-        problem = Problem(load_mesh(MESHES / file))
+        problem = Problem(read_disk(MESHES / file))
         onset, error = locate(problem)
         loads = onset * (1 + DISTANCES)
         values = np.array(follow(problem, loads))

@@ -12,7 +12,7 @@ from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.solvers import Problem, Status
 from scripts.studies.common import make_mesh
 from scripts.studies.stability import cases
-from scripts.studies.stability.cases import Disk, Outcome
+from scripts.studies.stability.cases import DisplacedDisk, Outcome
 
 # Flat and long (springs: twisted) on the hexagon stretched to twice its length; below the
 # disk's first threshold, where there is one minimum only.
@@ -39,9 +39,9 @@ class Trial:
     name: str
     film: str
     load: float
-    case: Disk
+    case: DisplacedDisk
     against: str = TWIN
-    twin: Disk | None = None
+    twin: DisplacedDisk | None = None
     solver: str = "newton"
 
 
@@ -109,23 +109,23 @@ def row(trial: Trial) -> Row:
     )
 
 
-def hexagon(factor: float) -> Disk:
+def hexagon(factor: float) -> DisplacedDisk:
     """Return the paper's kind of mesh: a hexagon stretched along a diagonal."""
     polygon = {"kind": "stretched-hexagon", "factor": factor}
     mesh = make_mesh(polygon=polygon, vertices=474)
     return cases.disk(mesh.x, mesh.triangles)
 
 
-def _twinned(group: str, name: str, film: str, load: float, case: Disk) -> Trial:
+def _twinned(group: str, name: str, film: str, load: float, case: DisplacedDisk) -> Trial:
     """A trial against the same disk, turned and renumbered: rounding shows, and no more."""
     return Trial(group, name, film, load, case, twin=_turned(case))
 
 
-def _turned(case: Disk) -> Disk:
+def _turned(case: DisplacedDisk) -> DisplacedDisk:
     return cases.renumbered(cases.rotated(case))
 
 
-def _loads(film: str, base: Disk) -> Iterator[Trial]:
+def _loads(film: str, base: DisplacedDisk) -> Iterator[Trial]:
     for load in LOADS:
         against = BARE if load < 1 else FINER
         yield Trial("load", f"{load:g}", film, load, base, against)
@@ -134,7 +134,7 @@ def _loads(film: str, base: Disk) -> Iterator[Trial]:
         yield Trial("alpha to 0", f"{alpha:g}", film, load, base, FINER)
 
 
-_CHANGES: dict[str, Callable[[Disk], Disk]] = {
+_CHANGES: dict[str, Callable[[DisplacedDisk], DisplacedDisk]] = {
     "1e-9 m": partial(cases.scaled, factor=1e-9),
     "1e9 m": partial(cases.scaled, factor=1e9),
     "2^-30 m": partial(cases.scaled, factor=2.0**-30),
@@ -143,7 +143,7 @@ _CHANGES: dict[str, Callable[[Disk], Disk]] = {
     **{f"offset {d:g} sizes": partial(cases.offset, sizes=d) for d in (1e2, 1e4, 1e8)},
     "single precision": cases.single,
 }
-_STARTS: dict[str, Callable[[Disk], Disk]] = {
+_STARTS: dict[str, Callable[[DisplacedDisk], DisplacedDisk]] = {
     "crumpled by 0.05 L": partial(cases.crumpled, size=0.05),
     "crumpled by 0.5 L": partial(cases.crumpled, size=0.5),
     "crossed": cases.crossed,
@@ -168,7 +168,7 @@ def _reference(trial: Trial, outcome: Outcome) -> tuple[Outcome, str]:
     return found, f"{len(case.points)} vertices, {found.word}"
 
 
-def refined(case: Disk, x: FloatArray) -> Disk:
+def refined(case: DisplacedDisk, x: FloatArray) -> DisplacedDisk:
     """Return the disk with each triangle cut in four, started from the shape x (n_v, 3)."""
     mesh = case.mesh
     edges, n = mesh.edges, mesh.n_v
@@ -178,7 +178,7 @@ def refined(case: Disk, x: FloatArray) -> Disk:
         ab, bc, ca = (number[min(p), max(p)] for p in ((a, b), (b, c), (c, a)))
         made += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
     points = _with_middles(mesh.x, edges)
-    fine = Disk(points, np.array(made), np.zeros_like(points))
+    fine = DisplacedDisk(points, np.array(made), np.zeros_like(points))
     return replace(fine, displacement=_with_middles(x, edges) - fine.mesh.x)
 
 

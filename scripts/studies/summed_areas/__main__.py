@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_limits
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.film import AreaFilm
-from eulerplateau.mesh import DiskMesh, Shape, load_mesh
+from eulerplateau.mesh import Disk, Shape, read_disk
 from eulerplateau.solvers import Problem, displaced, solve
 from scripts.studies.common import ROOT
 
@@ -39,7 +39,7 @@ class Outcome:
 @click.command()
 def main() -> None:
     """Print both methods' outcomes as Markdown."""
-    mesh = load_mesh(MESH)
+    mesh = read_disk(MESH)
     click.echo(
         "| load | method | iterations | E over exact - 1 | length error | "
         "boundary triangles' area | worst angle |"
@@ -54,7 +54,7 @@ def main() -> None:
             )
 
 
-def outcomes(mesh: DiskMesh) -> Iterator[Outcome]:
+def outcomes(mesh: Disk) -> Iterator[Outcome]:
     """Yield what either method comes to, from the flat polygon with a small kick."""
     film = AreaFilm(mesh.loop, mesh.interior)
     problem = Problem(mesh, film)

@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 
 from eulerplateau.film import AreaFilm
 from eulerplateau.film.harmonic import follower
-from eulerplateau.mesh import DiskMesh
+from eulerplateau.mesh import Disk
 from eulerplateau.mesh.polygon import ellipse_perimeter
 from eulerplateau.solvers import Equilibrium, Problem, solve
 from scripts.studies.common import make_mesh
@@ -80,7 +80,7 @@ def thresholds() -> Iterator[Threshold]:
                 yield twist(mesh, name, grading)
 
 
-def twist(mesh: DiskMesh, name: str, grading: float) -> Threshold:
+def twist(mesh: Disk, name: str, grading: float) -> Threshold:
     """Return the threshold of one mesh."""
     problem = Problem(mesh, "area", in_plane=True)
     film = AreaFilm(mesh.loop, mesh.interior)

@@ -18,13 +18,13 @@ TENSIONS = (1000.0, 2600.0, 5200.0)
 SOFTEST = 2 * (2 * np.pi) ** 4 * 36 / 5
 
 
-def oval(rings: int = 6) -> DisplacedDisk:
+def oval(rings: int = 6) -> cases.DisplacedDisk:
     """Without any symmetry; six loop vertices for each ring."""
     points, triangles = shapes.disk_points(rings, jitter=0.2)
     return cases.disk(points * [1.5, 1.0], triangles)
 
 
-def hexagon() -> DisplacedDisk:
+def hexagon() -> cases.DisplacedDisk:
     """A regular lattice: three axes are equally long."""
     return cases.disk(*shapes.hexagon_points(6))
 

@@ -19,6 +19,25 @@ from tests.helpers import shapes
 ROOT = Path(__file__).parents[1]
 
 
+# The longest files, so that on several cores none is left over at the end.
+LONGEST = (
+    "test_rod_balance",
+    "test_docs",
+    "test_conjugate_gradient",
+    "test_render",
+    "test_main",
+    "test_soap_branches",
+    "test_exploration",
+    "test_sweep",
+    "test_extreme_meshes",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the longest files."""
+    items.sort(key=lambda item: item.path.stem not in LONGEST)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _one_blas_thread() -> Iterator[None]:
     """Two threads that wait for each other slow small matrices down a hundredfold."""

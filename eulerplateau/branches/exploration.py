@@ -65,15 +65,15 @@ class _Lead:
 
 
 def explore_from(
-    start: BranchPoint, control: StepControl, limits: Limits
+    start: BranchPoint, control: StepControl, limits: Limits, *, both_ways: bool = False
 ) -> Iterator[DiagramPoint]:
     """Yield the points of the branch through `start`, then of those that leave it.
 
-    From a start inside the window the branch is followed upwards, and then downwards.
+    That branch is followed the way `start` heads, or `both_ways`, one after the other.
     """
     order = count()
     leads = [_Lead(0, next(order), start, None)]
-    if start.value > control.window[0]:
+    if both_ways:
         back = replace(start, direction=start.direction.reversed())
         leads.append(_Lead(0, next(order), back, None))
     found: list[SpecialPoint] = []

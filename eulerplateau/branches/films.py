@@ -193,7 +193,9 @@ def _explored(
     problem: Problem, found: Equilibrium, control: StepControl, limits: Limits
 ) -> Iterator[FilmPoint]:
     def explored() -> Iterator[DiagramPoint]:
-        return explore_from(film_point(found, problem, control), control, limits)
+        start = film_point(found, problem, control)
+        inside = found.load > control.window[0]
+        return explore_from(start, control, limits, both_ways=inside)
 
     for visited in stepwise(explored):
         yield FilmPoint(**vars(visited))

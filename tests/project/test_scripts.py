@@ -239,7 +239,7 @@ def test_every_check_runs_and_any_failure_counts(ready: Clone, failing: str) -> 
         "-m ruff check",
         "-m ruff format --check",
         "-m mypy",
-        "-m pytest -n auto --dist loadfile -m not slow -x",
+        "-m pytest -n auto --dist loadfile --no-loadscope-reorder -m not slow -x",
     ]
 
 

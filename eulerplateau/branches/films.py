@@ -26,6 +26,7 @@ from eulerplateau.solvers import (
     Equilibrium,
     Problem,
     Status,
+    one_thread,
     solve,
     stepwise,
 )
@@ -124,10 +125,11 @@ def equilibrium_near(problem: Problem, shape: Shape, load: float) -> Equilibrium
     family, x_loop = FilmFamily(problem, film), film.project(shape.x_loop)
     control = StepControl(window=(load, load), unit=max(load, 1.0))
     at_this_load = Direction(np.zeros_like(x_loop), control.unit)
-    found = correct(family, x_loop, load, at_this_load, control)
-    if found is None:
-        raise SpecError("start", f"no equilibrium is next to it at the load {load:g}")
-    return equilibrium(found)
+    with one_thread():
+        found = correct(family, x_loop, load, at_this_load, control)
+        if found is None:
+            raise SpecError("start", f"no equilibrium is next to it at the load {load:g}")
+        return equilibrium(found)
 
 
 def first_equilibrium(

@@ -22,7 +22,7 @@ from eulerplateau.film.normal_moves import normal_heights
 from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
-from eulerplateau.mesh import Disk, Shape
+from eulerplateau.mesh import Shape
 
 # Tilings whose patterns are kept: of a sweep on a few meshes none is planned twice.
 _KEPT = 4
@@ -32,7 +32,7 @@ _NEAR = 1e-3
 _REWEIGHTINGS = 6
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class AreaFilm:
     """A film whose energy is load * area, load = sigma L^3 / alpha.
 
@@ -46,6 +46,11 @@ class AreaFilm:
     load: Load = TENSION
     _tilings: list[Tiling] = field(default_factory=list, repr=False, compare=False)
     _recent: list[AreaOfLoop] = field(default_factory=list, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        """Return one line: how many vertices, and the load's name."""
+        n_v = len(self.loop) + len(self.interior)
+        return f"<AreaFilm: {n_v} vertices, load {self.load.text}>"
 
     def tiling(self, triangles: IntArray) -> Tiling:
         """Return the tiling by these triangles (n_t, 3), its pattern kept for later."""
@@ -212,11 +217,6 @@ class Area(Term):
     def holds(self, x: FloatArray) -> bool:
         """Return whether the film is still close enough to where it was made."""
         return self.local.holds(self.local.relax(x).sides)
-
-
-def area(disk: Disk) -> AreaFilm:
-    """Return the true soap film on a disk."""
-    return AreaFilm(disk.loop, disk.interior)
 
 
 def local_film(tiling: Tiling, x: FloatArray, free: bool = False) -> LocalFilm:

@@ -8,8 +8,16 @@ from eulerplateau.errors import SpecError
 from eulerplateau.film.load import FILM_LOADS
 
 if TYPE_CHECKING:
+    from eulerplateau.film.area import AreaFilm
     from eulerplateau.film.protocol import Film
     from eulerplateau.mesh import Disk
+
+
+def area(disk: Disk) -> AreaFilm:
+    """Return the true soap film on a disk."""
+    from eulerplateau.film.area import AreaFilm
+
+    return AreaFilm(disk.loop, disk.interior)
 
 
 def make_film(disk: Disk, model: str = "springs", *, in_plane: bool = False) -> Film:
@@ -29,8 +37,6 @@ def make_film(disk: Disk, model: str = "springs", *, in_plane: bool = False) -> 
 
         return plane_film(disk)
     if model == "area":
-        from eulerplateau.film.area import area
-
         return area(disk)
     from eulerplateau.film.quadratic import dirichlet, springs
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
-from eulerplateau.film.area import AreaFilm, area
+from eulerplateau.film.area import AreaFilm
 from eulerplateau.film.harmonic import follower
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.plane_mesh import carry_in_plane
@@ -23,7 +23,7 @@ from eulerplateau.mesh import Disk, Shape, polygon_area, polygon_gradient
 _FLAT = 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PlaneFilm:
     """A flat film whose energy is load * area, load = sigma L^3 / alpha.
 
@@ -36,6 +36,10 @@ class PlaneFilm:
     soap: AreaFilm
     axes: FloatArray
     load: Load = TENSION
+
+    def __repr__(self) -> str:
+        """Return one line: how many vertices the loop has, and the load's name."""
+        return f"<PlaneFilm: {len(self.soap.loop)} on the loop, load {self.load.text}>"
 
     def flattened(self, x: FloatArray) -> FloatArray:
         """Return positions (n, 3) projected onto the plane through the origin."""
@@ -181,4 +185,4 @@ def plane_film(disk: Disk) -> PlaneFilm:
     axes = axes[:2]
     if polygon_area(loop @ axes.T) < 0:
         axes = axes * np.array([[1.0], [-1.0]])
-    return PlaneFilm(area(disk), axes)
+    return PlaneFilm(AreaFilm(disk.loop, disk.interior), axes)

@@ -21,7 +21,7 @@ from eulerplateau.mesh import Disk, Shape, cotangents
 _THINNEST = 1e-12
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class QuadraticFilm:
     """A film whose energy is load * sum_e w_e |e|^2; which load, load.py says.
 
@@ -39,6 +39,10 @@ class QuadraticFilm:
     rest: Shape
     interior: IntArray
     load: Load
+
+    def __repr__(self) -> str:
+        """Return one line: how many edges carry weights, and the load's name."""
+        return f"<QuadraticFilm: {len(self.edges)} edges, load {self.load.text}>"
 
     def laplacian(self) -> csc_array:
         """Return the weighted graph Laplacian (n_v, n_v): energy = load * tr(x^T L x)."""

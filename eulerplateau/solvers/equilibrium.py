@@ -89,6 +89,15 @@ class Stability:
         return float(self.eigenvalues[0]) if len(self.eigenvalues) else np.inf
 
 
+@dataclass(frozen=True)
+class Settled:
+    """Where an iteration settled: positions (n, d), tensions, iterations."""
+
+    x: FloatArray
+    tensions: FloatArray
+    iterations: int
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Equilibrium:
     """An equilibrium, or the best a solver reached. Units: lengths L, energies alpha/L.

@@ -13,17 +13,8 @@ from typing import Protocol
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers.equilibrium import Stability
+from eulerplateau.solvers.equilibrium import Settled, Stability
 from eulerplateau.solvers.second_variation import TangentModel, stability, tangent_model
-
-
-@dataclass(frozen=True)
-class Settled:
-    """Where an iteration settled: positions (n, d), tensions, iterations."""
-
-    x: FloatArray
-    tensions: FloatArray
-    iterations: int
 
 
 class Models(Protocol):

@@ -29,7 +29,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import TURNS, Loop, LoopEnergy, backward_differences, differences
-from eulerplateau.solvers.models import Settled
+from eulerplateau.solvers.equilibrium import Settled
 
 # Deflation strength over the mean diagonal of H: between its soft and its stiff modes.
 _DEFLATION = 1e-3

@@ -15,9 +15,9 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import Loop, LoopEnergy
-from eulerplateau.solvers.equilibrium import Stability
+from eulerplateau.solvers.equilibrium import Settled, Stability
 from eulerplateau.solvers.large_loops.subspace_model import lowest_modes, subspace_model
-from eulerplateau.solvers.models import DenseModels, Models, Settled
+from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.primal_dual import settle
 from eulerplateau.solvers.second_variation import TangentModel
 

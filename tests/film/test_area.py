@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import AreaFilm, area
-from eulerplateau.film.models import make_film
+from eulerplateau.film.area import (
+    AreaFilm,
+)
+from eulerplateau.film.models import (
+    area,
+    make_film,
+)
 from eulerplateau.film.tiling import Tiling, TriangleGeometry
 from eulerplateau.loop.kernels import area_beyond_linear
 from eulerplateau.mesh.disk import Disk

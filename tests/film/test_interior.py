@@ -8,13 +8,15 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import (
-    area,
     local_film,
 )
 from eulerplateau.film.harmonic import balance, follow_loop, follower
 from eulerplateau.film.interior import (
     FilmAtRest,
     LocalFilm,
+)
+from eulerplateau.film.models import (
+    area,
 )
 from eulerplateau.film.tiling import Tiling
 from eulerplateau.loop.loop import Loop

@@ -10,7 +10,6 @@ from eulerplateau.branches.exploration import Limits, explore_from
 from eulerplateau.branches.films import FilmFamily
 from eulerplateau.film.area import (
     AreaFilm,
-    area,
     local_film,
 )
 from eulerplateau.film.flips import (
@@ -20,6 +19,9 @@ from eulerplateau.film.interior import (
     LocalFilm,
 )
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
+from eulerplateau.film.models import (
+    area,
+)
 from eulerplateau.film.quadratic import dirichlet
 from eulerplateau.film.tiling import Tiling
 from eulerplateau.mesh.disk import Disk

@@ -10,11 +10,13 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.area import (
     Area,
-    area,
     local_film,
 )
 from eulerplateau.film.interior import (
     LocalFilm,
+)
+from eulerplateau.film.models import (
+    area,
 )
 from eulerplateau.loop import Loop, free_motions, inextensible
 from eulerplateau.mesh.disk import Disk

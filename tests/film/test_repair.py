@@ -7,10 +7,12 @@ import pytest
 from scipy.spatial import Delaunay
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.area import area
 from eulerplateau.film.flip_kernels import flip_to_delaunay
 from eulerplateau.film.flips import (
     delaunay_flips,
+)
+from eulerplateau.film.models import (
+    area,
 )
 from eulerplateau.film.repair import (
     carry_along,

@@ -116,6 +116,48 @@ def test_other_rooms_are_reached_through_their_faces(module: str) -> None:
     assert {t for t in others - SHARED_KERNELS if FILES[t].name != "__init__.py"} == set()
 
 
+def behind_the_faces() -> dict[str, set[str]]:
+    """Return what every module imports, its functions included, faces looked through."""
+    shown = {
+        (".".join(path.parent.relative_to(ROOT.parent).parts), alias.name): node.module
+        or ""
+        for path in ROOT.rglob("__init__.pyi")
+        for node in ast.parse(path.read_text()).body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+
+    def home(module: str, name: str) -> str:
+        while (module, name) in shown:
+            module = f"{module}.{shown[module, name]}"
+        return f"{module}.{name}" if f"{module}.{name}" in FILES else module
+
+    def own(node: ast.AST) -> bool:
+        named = node.module if isinstance(node, ast.ImportFrom) else None
+        return (named or "").split(".")[0] == "eulerplateau"
+
+    graph = {}
+    for module, path in FILES.items():
+        nodes = [node for node in ast.walk(ast.parse(path.read_text())) if own(node)]
+        homes = {home(node.module, alias.name) for node in nodes for alias in node.names}
+        graph[module] = homes - {module}
+    return graph
+
+
+def test_no_chain_of_imports_from_file_to_file_is_longer_than_16() -> None:
+    graph = behind_the_faces()
+    length: dict[str, int] = {}
+    for module in TopologicalSorter(graph).static_order():
+        below = [length[other] for other in graph.get(module, ()) if other in length]
+        length[module] = 1 + max(below, default=0)
+    assert max(length.values()) <= 16
+
+
+@pytest.mark.parametrize("module", FILES)
+def test_no_file_is_longer_than_300_lines(module: str) -> None:
+    assert len(FILES[module].read_text().splitlines()) <= 300
+
+
 def test_imports_never_run_in_a_circle() -> None:
     # Raises CycleError, which names the circle.
     TopologicalSorter({module: targets(module) for module in FILES}).prepare()

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import area
+from eulerplateau.film.models import (
+    area,
+)
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import SOLVERS, Problem, conjugate_gradient, solving
 from eulerplateau.solvers.equilibrium import (

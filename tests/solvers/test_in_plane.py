@@ -7,7 +7,9 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import planar_film
-from eulerplateau.film.area import area
+from eulerplateau.film.models import (
+    area,
+)
 from eulerplateau.loop import Loop, LoopEnergy, close_with_lengths
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, Status, solve, stability, tangent_model

@@ -8,8 +8,10 @@ from scipy.spatial.distance import pdist, squareform
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import follow_kernels
-from eulerplateau.film.area import area
 from eulerplateau.film.harmonic import follower
+from eulerplateau.film.models import (
+    area,
+)
 from eulerplateau.loop import kernels, slide_kernels
 from eulerplateau.loop.lengths import jacobian
 from eulerplateau.loop.loop import Loop

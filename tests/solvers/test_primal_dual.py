@@ -8,7 +8,7 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, solve
-from eulerplateau.solvers.models import Settled
+from eulerplateau.solvers.equilibrium import Settled
 from eulerplateau.solvers.primal_dual import settle
 from tests.helpers import equilibria, shapes
 

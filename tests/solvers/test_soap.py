@@ -7,7 +7,9 @@ import pytest
 from scipy.linalg import eigh
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.area import area
+from eulerplateau.film.models import (
+    area,
+)
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, lowest_modes, solving, tangent_model
 from eulerplateau.solvers.equilibrium import (

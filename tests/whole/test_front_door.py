@@ -126,7 +126,8 @@ def test_energy_of_unit_load_is_the_energys_derivative_along_a_sweep(
 
 
 def test_results_print_in_a_line(problem: ep.Problem, saddle: ep.Equilibrium) -> None:
-    shown = [problem, problem.disk, saddle, saddle.shape]
+    shown = [problem, problem.disk, problem.film, saddle, saddle.shape]
+    shown += [ep.Problem(problem.disk, "area", in_plane=plane).film for plane in (0, 1)]
     shown += [ep.planar_film(lobes=2, tension=2000.0)]
     for thing in shown:
         assert "\n" not in repr(thing)

@@ -49,16 +49,8 @@ class QuadraticModels(DenseModels):
 
 
 @dataclass(frozen=True)
-class SubspaceModels:
+class SubspaceModels(QuadraticModels):
     """A subspace of the tangent space of a large loop at a time."""
-
-    energy: LoopEnergy
-    loop: Loop
-
-    @cached_property
-    def matrix(self) -> FloatArray:
-        """A (n_b, n_b), the energy's constant second derivative."""
-        return self.energy.hessian(np.zeros((len(self.loop.rest_lengths), 3)))
 
     @property
     def always_classified(self) -> bool:

@@ -109,11 +109,16 @@ def equilibrium(point: BranchPoint) -> Equilibrium:
     return replace(classified, iterations=point.corrections, stability=point.stability)
 
 
+def _near(problem: Problem, shape: Shape) -> tuple[FilmFamily, FloatArray]:
+    """Return the family good near a shape, and the shape's loop in its coordinates."""
+    film = problem.film.of_loop(problem.film.prepared(shape))
+    return FilmFamily(problem, film), film.project(shape.x_loop)
+
+
 def film_point(found: Equilibrium, problem: Problem, control: StepControl) -> BranchPoint:
     """Return the branch point at an equilibrium, heading for higher loads."""
-    film = problem.film.of_loop(problem.film.prepared(found.shape))
-    x_loop = film.project(found.shape.x_loop)
-    return first_point(FilmFamily(problem, film), x_loop, found.load, control)
+    family, x_loop = _near(problem, found.shape)
+    return first_point(family, x_loop, found.load, control)
 
 
 def equilibrium_near(problem: Problem, shape: Shape, load: float) -> Equilibrium:
@@ -121,8 +126,7 @@ def equilibrium_near(problem: Problem, shape: Shape, load: float) -> Equilibrium
 
     Raises SpecError where Newton's method comes to none.
     """
-    film = problem.film.of_loop(problem.film.prepared(shape))
-    family, x_loop = FilmFamily(problem, film), film.project(shape.x_loop)
+    family, x_loop = _near(problem, shape)
     control = StepControl(window=(load, load), unit=max(load, 1.0))
     at_this_load = Direction(np.zeros_like(x_loop), control.unit)
     with one_thread():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby, pairwise
@@ -34,7 +35,7 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class Series:
+class Series(ABC):
     """Successive rows of a run that make one curve of its diagram.
 
     Attributes
@@ -49,14 +50,14 @@ class Series:
     start: int | None = field(default=None, kw_only=True)
 
     @property
+    @abstractmethod
     def name(self) -> str:
         """What tells it from the run's other series."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def group(self) -> str:
         """What the series drawn alike have in common."""
-        raise NotImplementedError
 
     @property
     def last(self) -> int:
@@ -76,13 +77,13 @@ class Series:
             dtype=float,
         )
 
+    @abstractmethod
     def pieces(self, values: FloatArray, jump: float = math.inf) -> Iterator[Piece]:
         """Yield the curve of `values` (n,) piece by piece.
 
         It has a gap where a value is NaN, or changes by more than `jump` from one point of
         a branch to the next.
         """
-        raise NotImplementedError
 
 
 @dataclass(frozen=True)

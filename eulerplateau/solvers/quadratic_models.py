@@ -27,8 +27,8 @@ DENSE_LOOP = 128
 
 
 @dataclass(frozen=True)
-class QuadraticModels(DenseModels):
-    """The whole tangent space, and Newton's method on positions and tensions near by."""
+class _OneMatrix(DenseModels):
+    """Models of an energy with one constant second derivative for all coordinates."""
 
     loop: Loop
 
@@ -36,6 +36,11 @@ class QuadraticModels(DenseModels):
     def matrix(self) -> FloatArray:
         """A (n_b, n_b), the energy's constant second derivative."""
         return self.energy.hessian(np.zeros((len(self.loop.rest_lengths), 3)))
+
+
+@dataclass(frozen=True)
+class QuadraticModels(_OneMatrix):
+    """The whole tangent space, and Newton's method on positions and tensions near by."""
 
     def settle(
         self,
@@ -49,7 +54,7 @@ class QuadraticModels(DenseModels):
 
 
 @dataclass(frozen=True)
-class SubspaceModels(QuadraticModels):
+class SubspaceModels(_OneMatrix):
     """A subspace of the tangent space of a large loop at a time."""
 
     @property
@@ -68,16 +73,6 @@ class SubspaceModels(QuadraticModels):
     def modes(self, model: TangentModel, count: int) -> FloatArray:
         """Return as many modes (3 n_b, m) as are unstable or neutral, and one more."""
         return lowest_modes(self.loop, self.matrix, model)[1][:, :count]
-
-    def settle(
-        self,
-        x: FloatArray,
-        tensions: FloatArray,
-        limit: int,
-        observe: Callable[[FloatArray], None],
-    ) -> Settled | None:
-        """Return None: a model's Newton step is as good as it gets."""
-        return None
 
 
 def quadratic_models(loop: Loop, energy: LoopEnergy) -> Models:

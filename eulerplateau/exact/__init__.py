@@ -2,12 +2,14 @@
 
     planar/         `planar_film`: equilibria of a film in its plane, contact of the loop's
                     sides included (docs/planar.md)
+    cell/           `regular_cell`: cells on adhesions, their transitions (docs/cells.md)
     tangent_angle/  `relax_in_plane`: those without contact, downhill from a start
     conformal/      `relax`: films in space, downhill from a start; their branches and
                     their stability (docs/true-film.md)
     checks.py       what is asked of their arguments
 
-Lengths are in units of L, energies in alpha/L; a tension is sigma_hat = sigma L^3 / alpha.
+Of films, lengths are in units of L, energies in alpha/L; a tension is sigma_hat =
+sigma L^3 / alpha.
 Of the other rooms this one knows nothing: it is the referee of everything on a mesh.
 """
 

@@ -1,0 +1,17 @@
+"""Exact cells: contractile films whose edge is free in length and held by adhesions.
+
+    regular.py         `regular_cell`: on a regular polygon of adhesions, from the
+                       boundary-value problem; side.py: half a side, by polynomials
+    tethered.py        all shapes of a regular cell on one curve
+    transitions.py     inflection and folds, located on it
+    stars.py           concave cells with cusps, and their protrusions
+    arcs.py            the limit without bending
+    approximations.py  the paper's formulas, to be measured
+
+Units alpha = R_0 = 1: sigma_hat = sigma R_0^3 / alpha, ks_hat = k_s R_0^3 / alpha,
+beta_hat = beta R_0^2 / alpha (docs/cells.md).
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

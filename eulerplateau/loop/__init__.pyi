@@ -1,5 +1,9 @@
+from .adhesions import Adhesions as Adhesions
 from .bending import Bending as Bending, inextensible as inextensible
+from .edges import Edges as Edges, edges_of as edges_of
 from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy, Term as Term
+from .equal_edges import EqualEdges as EqualEdges
+from .free_bending import FreeBending as FreeBending
 from .lengths import (
     LengthMetric as LengthMetric,
     Lengths as Lengths,
@@ -8,6 +12,7 @@ from .lengths import (
     length_metric as length_metric,
     project_lengths as project_lengths,
 )
+from .line_tension import LineTension as LineTension
 from .loop import (
     Loop as Loop,
     backward_differences as backward_differences,

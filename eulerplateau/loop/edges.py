@@ -1,0 +1,104 @@
+"""The edges of a polygon in the plane: lengths, directions, and how they change.
+
+Of an edge e = l t with the tangent t = (cos theta, sin theta) and n = (-sin, cos) to its
+left, dl = t . de and dtheta = n . de / l; the second derivatives by e are
+
+    d2l = n n^T / l,    d2theta = -(t n^T + n t^T) / l^2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.loop.loop import differences
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Edges v -> v + 1 of a closed polygon x (n, 2).
+
+    Attributes
+    ----------
+    vectors : (n, 2) float, e_v = x_{v+1} - x_v
+    lengths : (n,) float
+    tangents, normals : (n, 2) float, unit vectors along and to the left of each edge
+    """
+
+    vectors: FloatArray
+    lengths: FloatArray
+    tangents: FloatArray
+    normals: FloatArray
+
+    @property
+    def turning(self) -> FloatArray:
+        """Exterior angles (n,) of edge v against edge v - 1, in (-pi, pi], left positive."""
+        before = np.roll(self.tangents, 1, axis=0)
+        return _angle(before, self.tangents)
+
+    @property
+    def means(self) -> FloatArray:
+        """The length (n,) that belongs to each vertex, (l_v + l_{v-1}) / 2."""
+        return 0.5 * (self.lengths + np.roll(self.lengths, 1))
+
+
+def edges_of(x: FloatArray) -> Edges:
+    """Return the edges of a polygon (n, 2), none of which is a point."""
+    vectors = differences(x)
+    lengths = np.hypot(vectors[:, 0], vectors[:, 1])
+    tangents = vectors / lengths[:, None]
+    normals = np.column_stack([-tangents[:, 1], tangents[:, 0]])
+    return Edges(vectors, lengths, tangents, normals)
+
+
+def length_changes(before: Edges, step: FloatArray) -> FloatArray:
+    """Return by how much edges grow (n,), as precise as the step (n, 2) of the vertices.
+
+    As (2 e + u) . u / (l + l'), u the change of e: the difference of two lengths would
+    keep only the digits in which they differ.
+    """
+    moved = differences(step)
+    after = before.vectors + moved
+    grown = ((before.vectors + after) * moved).sum(axis=1)
+    lengths: FloatArray = before.lengths + np.hypot(after[:, 0], after[:, 1])
+    return grown / lengths
+
+
+def rotations(before: Edges, step: FloatArray) -> FloatArray:
+    """Return the angles (n,) in (-pi, pi] by which a step (n, 2) of the vertices turns edges."""
+    moved = differences(step)
+    along = (before.vectors * (before.vectors + moved)).sum(axis=1)
+    return np.arctan2(_cross(before.vectors, moved), along)
+
+
+def length_hessian(edges: Edges, weights: FloatArray) -> FloatArray:
+    """Return the second derivative (2 n, 2 n) of sum_v weights_v l_v."""
+    n = len(weights)
+    across = edges.normals[:, :, None] * edges.normals[:, None, :]
+    block = across * (weights / edges.lengths)[:, None, None]
+    local = np.block([[block, -block], [-block, block]])
+    v = np.arange(n)
+    return scattered(n, np.column_stack([v, (v + 1) % n]), local)
+
+
+def scattered(n: int, vertices: IntArray, blocks: FloatArray) -> FloatArray:
+    """Return the sum (2 n, 2 n) of matrices that belong to a few vertices each.
+
+    vertices : (m, k) int; blocks : (m, 2 k, 2 k) float, coordinates next to each other.
+    """
+    places = (2 * vertices[:, :, None] + np.arange(2)).reshape(len(vertices), -1)
+    entries = 2 * n * places[:, :, None] + places[:, None, :]
+    total = np.bincount(entries.ravel(), blocks.ravel(), minlength=4 * n * n)
+    return total.reshape(2 * n, 2 * n)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    crossed: FloatArray = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return crossed
+
+
+def _angle(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the angles (n,) from vectors a (n, 2) to vectors b."""
+    return np.arctan2(_cross(a, b), (a * b).sum(axis=1))

@@ -1,0 +1,111 @@
+"""A loop in pieces whose edges are equal: each piece has one length, which is free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError, solveh_banded
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.loop.edges import edges_of, length_hessian
+
+# Gauss-Newton converges quadratically: a handful of steps from a nearby loop.
+_PROJECTION_STEPS = 30
+# Edges that differ by less than this, relative to the longest, may be equal to rounding.
+_SMALL = 1e-12
+
+
+@dataclass(frozen=True)
+class EqualEdges:
+    """c_j = l_{j+1} - l_j = 0 inside each side of a polygon x (N m, 2).
+
+    Side i has the vertices i m ... (i + 1) m; the m - 1 equations of a side stand next to
+    each other. Between two sides nothing is asked, so that each has a free length.
+    """
+
+    per_side: int
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """Return dc/dx (n - N, 2 n)."""
+        rows = self._rows(x)
+        sides, inner = rows.shape[:2]
+        dense = np.zeros((sides * inner, len(x), 2))
+        first = self._first(sides)
+        for place in range(3):
+            vertices = (first + place) % len(x)
+            dense[np.arange(len(first)), vertices] = rows[:, :, place].reshape(-1, 2)
+        return dense.reshape(len(first), -1)
+
+    def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return J^T tensions (n, 2), for tensions (n - N,)."""
+        return self._pulled(self._rows(x), tensions, len(x))
+
+    def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the second derivative (2 n, 2 n) of tensions . c."""
+        pulls = tensions.reshape(-1, self.per_side - 1)
+        weights = -np.diff(pulls, axis=1, prepend=0.0, append=0.0)
+        return length_hessian(edges_of(x), weights.ravel())
+
+    def excess(self, x: FloatArray) -> FloatArray:
+        """Return c (N, m - 1)."""
+        lengths: FloatArray = edges_of(x).lengths.reshape(-1, self.per_side)
+        return np.diff(lengths, axis=1)
+
+    def project(self, x: FloatArray) -> FloatArray | None:
+        """Return a near loop with equal edges, to rounding; None if it is lost.
+
+        Gauss-Newton, the ends of the sides held still: each side's equations J J^T meet
+        their two next neighbours only, and a banded Cholesky costs O(n).
+        """
+        error = np.inf
+        for _ in range(_PROJECTION_STEPS):
+            if not np.isfinite(x).all():
+                return None
+            lengths = edges_of(x).lengths
+            if lengths.min() <= 0:
+                return None
+            excess = self.excess(x)
+            previous, error = error, float(np.abs(excess).max() / lengths.max())
+            # Quadratic convergence ends where rounding begins: then error stops falling.
+            if error < 1e-15 or (error < _SMALL and error >= 0.25 * previous):
+                return x
+            rows = self._rows(x)
+            rows[:, 0, 0] = rows[:, -1, 2] = 0.0
+            try:
+                pull = solveh_banded(_normal_bands(rows), excess.ravel(), lower=True)
+            except (LinAlgError, ValueError):
+                return None
+            x = x - self._pulled(rows, pull, len(x))
+        return x if error < _SMALL else None
+
+    def _rows(self, x: FloatArray) -> FloatArray:
+        """Return dc/dx (N, m - 1, 3, 2) of each equation by its three vertices."""
+        tangents = edges_of(x).tangents.reshape(-1, self.per_side, 2)
+        before, after = tangents[:, :-1], tangents[:, 1:]
+        return np.stack([before, -before - after, after], axis=2)
+
+    def _first(self, sides: int) -> IntArray:
+        """Return the first vertex (n - N,) of each equation."""
+        starts = self.per_side * np.arange(sides)
+        first: IntArray = (starts[:, None] + np.arange(self.per_side - 1)).ravel()
+        return first
+
+    def _pulled(self, rows: FloatArray, pull: FloatArray, n: int) -> FloatArray:
+        """Return J^T pull (n, 2) for given rows of J."""
+        pulls = pull.reshape(rows.shape[:2])[:, :, None, None] * rows
+        moved = np.zeros((n, 2))
+        first = self._first(len(rows))
+        for place in range(3):
+            # No two equations have the same vertex in the same place.
+            moved[(first + place) % n] += pulls[:, :, place].reshape(-1, 2)
+        return moved
+
+
+def _normal_bands(rows: FloatArray) -> FloatArray:
+    """Return the lower bands (3, n - N) of J J^T, rows (N, m - 1, 3, 2) as in `_rows`."""
+    bands = np.zeros((3, *rows.shape[:2]))
+    bands[0] = (rows**2).sum(axis=(2, 3))
+    bands[1, :, :-1] = (rows[:, :-1, 1:] * rows[:, 1:, :2]).sum(axis=(2, 3))
+    bands[2, :, :-2] = (rows[:, :-2, 2] * rows[:, 2:, 0]).sum(axis=2)
+    return bands.reshape(3, -1)

@@ -8,6 +8,6 @@ from .load import (
     Load as Load,
 )
 from .models import make_film as make_film
-from .plane import PlaneFilm as PlaneFilm
+from .plane import PlaneFilm as PlaneFilm, PolygonArea as PolygonArea
 from .protocol import Film as Film, FilmOfLoop as FilmOfLoop
 from .quadratic import QuadraticFilm as QuadraticFilm, Stiffness as Stiffness

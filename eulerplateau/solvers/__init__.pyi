@@ -1,10 +1,13 @@
+from .descent import Descent as Descent
 from .equilibrium import (
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,
+    RESOLVED_TURNING as RESOLVED_TURNING,
     Equilibrium as Equilibrium,
     Stability as Stability,
     Status as Status,
     with_stability as with_stability,
 )
+from .models import DenseModels as DenseModels
 from .modes import lowest_modes as lowest_modes
 from .problem import Problem as Problem
 from .second_variation import (

@@ -35,6 +35,7 @@ class Status(Enum):
     NOT_FINITE = "not_finite"
     UNRESOLVED = "unresolved"
     PINCHED = "pinched"
+    TOUCHING = "touching"
 
     @property
     def advice(self) -> str:
@@ -49,6 +50,7 @@ _ADVICE = {
     Status.SADDLE: "lower states lie close by: the load is at a transition; step past it",
     Status.NOT_FINITE: "the start is not finite, or the energy overflowed: a smaller load",
     Status.PINCHED: "two strands of the loop meet: no film spans what is between them",
+    Status.TOUCHING: "the edge meets itself: a smaller load, or softer adhesions",
     Status.UNRESOLVED: "the loop turns by over 30 degrees at a vertex: use a finer mesh",
 }
 

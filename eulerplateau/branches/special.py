@@ -60,7 +60,7 @@ class SpecialPoint:
     ----------
     kind : FOLD or BIFURCATION
     point : the equilibrium; at a bifurcation its direction is (q, 1), towards higher values
-    mode : (n_b, 3) float, the critical displacement phi
+    mode : (n, d) float, the critical displacement phi
     eigenvalue : float, what is left of the critical eigenvalue
     error : float
         What rounding in the eigenvalue can have moved the parameter by.

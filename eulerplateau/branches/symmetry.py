@@ -4,6 +4,9 @@ The operations are those of a rectangular box along the loop's principal axes: m
 across, half turns about, and inversion through the centre. A loop has an operation if the
 operation, together with a shift or reversal of the vertex numbers, brings it back onto
 itself. An unstructured mesh is symmetric only nearly (its plane apart), hence a tolerance.
+
+A loop in the plane (n, 2) counts as flat in space. Where two extents are equal, as those of
+a regular triangle are, the axes in their plane are any, and what is said of them is too.
 """
 
 from __future__ import annotations
@@ -46,10 +49,10 @@ class ModeSymmetry:
 
 
 def mode_symmetry(x_loop: FloatArray, mode: FloatArray) -> ModeSymmetry:
-    """Classify a displacement `mode` (n_b, 3) of the loop (n_b, 3)."""
-    centred = x_loop - x_loop.mean(axis=0)
+    """Classify a displacement `mode` (n, d) of the loop (n, d), d = 3, or 2 in a plane."""
+    centred = _in_space(x_loop - x_loop.mean(axis=0))
     axes = np.linalg.svd(centred, full_matrices=False)[2]
-    shape, moved = centred @ axes.T, mode @ axes.T
+    shape, moved = centred @ axes.T, _in_space(mode) @ axes.T
     numberings = _numberings(len(shape))
     breaks: list[str] = []
     keeps: list[str] = []
@@ -67,6 +70,11 @@ def mode_symmetry(x_loop: FloatArray, mode: FloatArray) -> ModeSymmetry:
     return ModeSymmetry(tuple(breaks), tuple(keeps), transverse)
 
 
+def _in_space(rows: FloatArray) -> FloatArray:
+    """Return vectors (n, d) in space (n, 3)."""
+    return np.pad(rows, ((0, 0), (0, 3 - rows.shape[1])))
+
+
 def _numberings(n: int) -> IntArray:
     """Return all 2 n cyclic shifts and reversals of 0 ... n - 1, one per row."""
     v = np.arange(n)
@@ -75,9 +83,10 @@ def _numberings(n: int) -> IntArray:
 
 
 def loop_distance(x_loop: FloatArray, other: FloatArray) -> float:
-    """Return the r.m.s. distance of two loops (n_b, 3) after the best rotation."""
+    """Return the r.m.s. distance of two loops (n, d) after the best rotation."""
     a, b = x_loop - x_loop.mean(axis=0), other - other.mean(axis=0)
     u, _, vt = np.linalg.svd(a.T @ b)
-    handed = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
+    handed = np.ones(len(u))
+    handed[-1] = np.sign(np.linalg.det(u @ vt))
     aligned = a @ (u * handed) @ vt
     return float(np.sqrt(np.mean(np.sum((aligned - b) ** 2, axis=1))))

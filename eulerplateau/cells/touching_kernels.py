@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from numba import njit
 
 from eulerplateau.arrays import FloatArray
@@ -38,17 +40,23 @@ def near(x: FloatArray, lengths: FloatArray, reach: float, apart: int) -> bool:
     """Whether a vertex comes within `reach` edges of an edge at least `apart` edges away.
 
     Measured in the shorter of the edges there, so that sides with short edges beside ones
-    with long edges are no contact. x : (n, 2); lengths : (n,), of edges v -> v + 1.
+    with long edges are no contact. An edge that begins at the distance d is followed by
+    others out of reach until the loop can have come that far, which are left out.
+    x : (n, 2); lengths : (n,), of edges v -> v + 1.
     """
     n = x.shape[0]
+    longest = lengths.max()
     for i in range(n):
         own = min(lengths[i], lengths[i - 1])
-        for k in range(apart, n - apart):
+        k = apart
+        while k < n - apart:
             j = i + k if i + k < n else i + k - n
-            limit = reach * min(own, lengths[j])
             d_x, d_y = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1]
-            if d_x * d_x + d_y * d_y > (limit + lengths[j]) ** 2:
+            ahead = (math.sqrt(d_x * d_x + d_y * d_y) - reach * own) / longest
+            k += max(1, int(min(ahead, float(n))))
+            if ahead > 1.0:
                 continue
+            limit = reach * min(own, lengths[j])
             after = j + 1 if j + 1 < n else 0
             e_x, e_y = x[after, 0] - x[j, 0], x[after, 1] - x[j, 1]
             part = (d_x * e_x + d_y * e_y) / (lengths[j] * lengths[j])

@@ -35,13 +35,25 @@ class Edges:
     @property
     def turning(self) -> FloatArray:
         """Exterior angles (n,) of edge v against edge v - 1, in (-pi, pi], left positive."""
-        before = np.roll(self.tangents, 1, axis=0)
-        return _angle(before, self.tangents)
+        before = shifted(self.tangents)
+        along = (before * self.tangents).sum(axis=1)
+        return np.arctan2(_cross(before, self.tangents), along)
 
     @property
     def means(self) -> FloatArray:
         """The length (n,) that belongs to each vertex, (l_v + l_{v-1}) / 2."""
-        return 0.5 * (self.lengths + np.roll(self.lengths, 1))
+        return 0.5 * (self.lengths + shifted(self.lengths))
+
+    @property
+    def shifted(self) -> Edges:
+        """The same with edge v - 1 in place of edge v."""
+        parts = self.vectors, self.lengths, self.tangents, self.normals
+        return Edges(*(shifted(part) for part in parts))
+
+
+def shifted(rows: FloatArray) -> FloatArray:
+    """Return row v - 1 in place of row v, cyclic (np.roll costs more than the work)."""
+    return np.concatenate([rows[-1:], rows[:-1]])
 
 
 def edges_of(x: FloatArray) -> Edges:
@@ -49,7 +61,8 @@ def edges_of(x: FloatArray) -> Edges:
     vectors = differences(x)
     lengths = np.hypot(vectors[:, 0], vectors[:, 1])
     tangents = vectors / lengths[:, None]
-    normals = np.column_stack([-tangents[:, 1], tangents[:, 0]])
+    normals = np.empty_like(tangents)
+    normals[:, 0], normals[:, 1] = -tangents[:, 1], tangents[:, 0]
     return Edges(vectors, lengths, tangents, normals)
 
 
@@ -78,9 +91,16 @@ def length_hessian(edges: Edges, weights: FloatArray) -> FloatArray:
     n = len(weights)
     across = edges.normals[:, :, None] * edges.normals[:, None, :]
     block = across * (weights / edges.lengths)[:, None, None]
-    local = np.block([[block, -block], [-block, block]])
-    v = np.arange(n)
-    return scattered(n, np.column_stack([v, (v + 1) % n]), local)
+    local = np.empty((n, 2, 2, 2, 2))
+    local[:, 0, :, 0] = local[:, 1, :, 1] = block
+    local[:, 0, :, 1] = local[:, 1, :, 0] = -block
+    return scattered(n, neighbours(n, (0, 1)), local.reshape(n, 4, 4))
+
+
+def neighbours(n: int, offsets: tuple[int, ...]) -> IntArray:
+    """Return the vertices v + offset (n, k) of each vertex v of a closed polygon."""
+    around: IntArray = (np.arange(n)[:, None] + np.array(offsets)) % n
+    return around
 
 
 def scattered(n: int, vertices: IntArray, blocks: FloatArray) -> FloatArray:
@@ -97,8 +117,3 @@ def scattered(n: int, vertices: IntArray, blocks: FloatArray) -> FloatArray:
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     crossed: FloatArray = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     return crossed
-
-
-def _angle(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the angles (n,) from vectors a (n, 2) to vectors b."""
-    return np.arctan2(_cross(a, b), (a * b).sum(axis=1))

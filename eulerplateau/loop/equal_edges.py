@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, solveh_banded
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.loop.edges import edges_of, length_hessian
+from eulerplateau.loop.edges import Edges, edges_of, length_hessian
 
 # Gauss-Newton converges quadratically: a handful of steps from a nearby loop.
 _PROJECTION_STEPS = 30
@@ -28,7 +28,7 @@ class EqualEdges:
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Return dc/dx (n - N, 2 n)."""
-        rows = self._rows(x)
+        rows = self._rows(edges_of(x))
         sides, inner = rows.shape[:2]
         dense = np.zeros((sides * inner, len(x), 2))
         first = self._first(sides)
@@ -39,7 +39,7 @@ class EqualEdges:
 
     def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return J^T tensions (n, 2), for tensions (n - N,)."""
-        return self._pulled(self._rows(x), tensions, len(x))
+        return self._pulled(self._rows(edges_of(x)), tensions, len(x))
 
     def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the second derivative (2 n, 2 n) of tensions . c."""
@@ -49,8 +49,7 @@ class EqualEdges:
 
     def excess(self, x: FloatArray) -> FloatArray:
         """Return c (N, m - 1)."""
-        lengths: FloatArray = edges_of(x).lengths.reshape(-1, self.per_side)
-        return np.diff(lengths, axis=1)
+        return self._excess(edges_of(x))
 
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return a near loop with equal edges, to rounding; None if it is lost.
@@ -62,15 +61,15 @@ class EqualEdges:
         for _ in range(_PROJECTION_STEPS):
             if not np.isfinite(x).all():
                 return None
-            lengths = edges_of(x).lengths
-            if lengths.min() <= 0:
+            edges = edges_of(x)
+            if edges.lengths.min() <= 0:
                 return None
-            excess = self.excess(x)
-            previous, error = error, float(np.abs(excess).max() / lengths.max())
+            excess = self._excess(edges)
+            previous, error = error, float(np.abs(excess).max() / edges.lengths.max())
             # Quadratic convergence ends where rounding begins: then error stops falling.
             if error < 1e-15 or (error < _SMALL and error >= 0.25 * previous):
                 return x
-            rows = self._rows(x)
+            rows = self._rows(edges)
             rows[:, 0, 0] = rows[:, -1, 2] = 0.0
             try:
                 pull = solveh_banded(_normal_bands(rows), excess.ravel(), lower=True)
@@ -79,9 +78,12 @@ class EqualEdges:
             x = x - self._pulled(rows, pull, len(x))
         return x if error < _SMALL else None
 
-    def _rows(self, x: FloatArray) -> FloatArray:
+    def _excess(self, edges: Edges) -> FloatArray:
+        return np.diff(edges.lengths.reshape(-1, self.per_side), axis=1)
+
+    def _rows(self, edges: Edges) -> FloatArray:
         """Return dc/dx (N, m - 1, 3, 2) of each equation by its three vertices."""
-        tangents = edges_of(x).tangents.reshape(-1, self.per_side, 2)
+        tangents = edges.tangents.reshape(-1, self.per_side, 2)
         before, after = tangents[:, :-1], tangents[:, 1:]
         return np.stack([before, -before - after, after], axis=2)
 

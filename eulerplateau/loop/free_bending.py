@@ -17,14 +17,18 @@ from eulerplateau.loop.edges import (
     Edges,
     edges_of,
     length_changes,
+    neighbours,
     rotations,
     scattered,
+    shifted,
 )
 from eulerplateau.loop.energy import Term
 from eulerplateau.loop.loop import backward_differences
 
 # The sum of sizes in a row of the second derivative, 2 (1 + 4 + 6 + 4 + 1) / l^3.
 _STIFFEST = 32.0
+# How the two edges at a vertex (4) follow the positions x_{v-1}, x_v, x_{v+1} (6).
+_CHAIN = np.kron([[-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]], np.eye(2))
 
 
 @dataclass(frozen=True)
@@ -59,11 +63,8 @@ class FreeBending(Term):
         """Return the second derivative (2 n, 2 n): of each vertex and its neighbours."""
         n = len(x)
         by_edges = _edge_hessians(edges_of(x))
-        # How the two edges at a vertex follow x_{v-1}, x_v, x_{v+1}.
-        chain = np.kron([[-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]], np.eye(2))
-        v = np.arange(n)
-        vertices = np.column_stack([(v - 1) % n, v, (v + 1) % n])
-        return scattered(n, vertices, chain.T @ by_edges @ chain)
+        by_vertices = _CHAIN.T @ by_edges @ _CHAIN
+        return scattered(n, neighbours(n, (-1, 0, 1)), by_vertices)
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the energy at x + step less that at x, formed from changes of each part.
@@ -82,7 +83,7 @@ class FreeBending(Term):
         if not (np.abs(turning + more - new) < 1).all():
             raise LinAlgError("an edge of the loop folds back over its neighbour")
         grown = length_changes(edges, step)
-        grown = 0.5 * (grown + np.roll(grown, 1))
+        grown = 0.5 * (grown + shifted(grown))
         s, longer = edges.means, after.means
         by_angle = more * (turning + new) / longer
         return float((by_angle - turning**2 * grown / (s * longer)).sum())
@@ -90,7 +91,7 @@ class FreeBending(Term):
 
 def _edge_hessians(edges: Edges) -> FloatArray:
     """Return the second derivatives (n, 4, 4) of phi_v^2 / s_v by edges v - 1 and v."""
-    before = _rolled(edges)
+    before = edges.shifted
     phi, s = edges.turning[:, None, None], edges.means[:, None, None]
     by_angle = np.hstack([-before.normals / before.lengths[:, None],
                           edges.normals / edges.lengths[:, None]])
@@ -101,18 +102,12 @@ def _edge_hessians(edges: Edges) -> FloatArray:
     total += (2 * phi**2 / s**3) * _outer(by_length, by_length)
     for place, edge, sign in ((slice(0, 2), before, -1.0), (slice(2, 4), edges, 1.0)):
         across = _outer(edge.tangents, edge.normals)
-        l = edge.lengths[:, None, None]
-        curved = (across + across.transpose(0, 2, 1)) / l**2
-        stretched = _outer(edge.normals, edge.normals) / (2 * l)
+        length = edge.lengths[:, None, None]
+        curved = (across + across.transpose(0, 2, 1)) / length**2
+        stretched = _outer(edge.normals, edge.normals) / (2 * length)
         total[:, place, place] -= sign * (2 * phi / s) * curved
         total[:, place, place] -= (phi / s) ** 2 * stretched
     return total
-
-
-def _rolled(edges: Edges) -> Edges:
-    """Return edge v - 1 in place of edge v."""
-    parts = edges.vectors, edges.lengths, edges.tangents, edges.normals
-    return Edges(*(np.roll(part, 1, axis=0) for part in parts))
 
 
 def _outer(a: FloatArray, b: FloatArray) -> FloatArray:

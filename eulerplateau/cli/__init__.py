@@ -11,6 +11,7 @@ import click
 
 from eulerplateau import __version__
 from eulerplateau.cli.branches import branches
+from eulerplateau.cli.cell import cell
 from eulerplateau.cli.examples import examples
 from eulerplateau.cli.gallery import gallery
 from eulerplateau.cli.mesh import mesh
@@ -35,6 +36,7 @@ def commands() -> None:
 
 
 commands.add_command(branches)
+commands.add_command(cell)
 commands.add_command(examples)
 commands.add_command(gallery)
 commands.add_command(mesh)

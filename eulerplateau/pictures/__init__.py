@@ -5,6 +5,7 @@
     comparison.py    figures for print, of one run or of several; onset.py: scaling laws;
                      vector_film.py: films drawn as vectors
     planar.py        figures of the exact planar films
+    area_fit.py      cell areas over stiffness, with what was fitted to them
     figure.py        labels, colours, saving: what all figures have in common
     view.py, alignment.py   from where films are seen, and turned to lie alike
     render/          stills and animations by VTK, in a child process (child.py)

@@ -1,3 +1,4 @@
+from .area_fit import draw_area_fit as draw_area_fit
 from .branch_diagram import draw_branches as draw_branches
 from .comparison import draw_comparison as draw_comparison
 from .onset import fit_onset as fit_onset

@@ -1,5 +1,8 @@
 """Exact cells: contractile films whose edge is free in length and held by adhesions.
 
+    spreading.py       `cell_radius`: a round cell on a continuous adhesion
+    area_fit.py        `fit_areas`: contractility and bending from measured areas;
+                       area_model.py: the areas expected; profiles.py: least squares
     regular.py         `regular_cell`: on a regular polygon of adhesions, from the
                        boundary-value problem; side.py: half a side, by polynomials
     tethered.py        all shapes of a regular cell on one curve
@@ -8,8 +11,9 @@
     arcs.py            the limit without bending
     approximations.py  the paper's formulas, to be measured
 
-Units alpha = R_0 = 1: sigma_hat = sigma R_0^3 / alpha, ks_hat = k_s R_0^3 / alpha,
-beta_hat = beta R_0^2 / alpha (docs/cells.md).
+Spreading and fits are in the caller's own units. Otherwise alpha = R_0 = 1: sigma_hat =
+sigma R_0^3 / alpha, ks_hat = k_s R_0^3 / alpha, beta_hat = beta R_0^2 / alpha; see
+docs/cells.md.
 """
 
 import lazy_loader

@@ -7,12 +7,19 @@ from .approximations import (
     quartic_side as quartic_side,
 )
 from .arcs import ArcCell as ArcCell, arc_cell as arc_cell
+from .area_fit import AreaFit as AreaFit, Estimate as Estimate, fit_areas as fit_areas
 from .regular import (
     CellStatus as CellStatus,
     RegularCell as RegularCell,
     regular_cell as regular_cell,
 )
 from .side import HalfSide as HalfSide
+from .spreading import (
+    RadiusSlopes as RadiusSlopes,
+    cell_radius as cell_radius,
+    interpolated_radius as interpolated_radius,
+    radius_slopes as radius_slopes,
+)
 from .stars import Star as Star, star as star
 from .transitions import (
     Transition as Transition,

@@ -39,7 +39,9 @@ def branches(
     their loads located by an eigenvalue's crossing), shapes/*.vtp with the critical
     modes, branches.pvd (for ParaView), run.json, branches.png.
     """
-    run = load_single(spec, settings)
+    from eulerplateau.runs import load_run
+
+    run = load_single(spec, settings, load_run)
     folder = out or spec.with_name(f"{spec.stem}-branches")
     result = _explore(run, folder, quiet)
     drawn = ["branches.csv", "special_points.csv", "branches.pvd"]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeVar
 
 import click
 
-if TYPE_CHECKING:
-    from eulerplateau.runs import RunSpec
+S = TypeVar("S")
 
 
 def parse_setting(text: str) -> tuple[str, list[Any]]:
@@ -23,8 +23,10 @@ def parse_setting(text: str) -> tuple[str, list[Any]]:
         return key, given.split(",")
 
 
-def load_single(path: Path, settings: tuple[str, ...]) -> RunSpec:
-    """Read a run specification; each of `settings` is KEY=VALUE with a single value."""
+def load_single(
+    path: Path, settings: tuple[str, ...], read: Callable[[Path, dict[str, Any]], S]
+) -> S:
+    """Read a specification by `read`; each of `settings` is KEY=VALUE, a single value."""
     from eulerplateau.runs import load_with
 
     overrides = {}
@@ -33,4 +35,4 @@ def load_single(path: Path, settings: tuple[str, ...]) -> RunSpec:
         if len(values) != 1:
             raise click.BadParameter(f"{text!r} should give one value", param_hint="--set")
         overrides[key] = values[0]
-    return load_with(path, overrides)
+    return load_with(path, overrides, read)

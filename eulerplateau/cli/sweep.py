@@ -50,13 +50,13 @@ def sweep(
     Writes a run folder: sweep.csv (one row per load), shapes/*.vtp and sweep.pvd (for
     ParaView), run.json, diagram.png.
     """
-    from eulerplateau.runs import planned
+    from eulerplateau.runs import load_run, planned
 
     values = [parse_setting(text) for text in settings]
     if solver is not None:
         values.append(("solver.name", [solver]))
     code = 0
-    for spec, folder in planned(list(specs), values, out):
+    for spec, folder in planned(list(specs), values, out, load_run):
         try:
             result = _run(spec, folder, quiet)
         except EulerPlateauError as error:

@@ -5,6 +5,7 @@ from .files import (
     read_mesh as read_mesh,
     write_mesh as write_mesh,
 )
+from .filling import fill_polygon as fill_polygon
 from .generation import generate as generate
 from .making import mesh_polygon as mesh_polygon
 from .measures import Measurer as Measurer, Measures as Measures, measure as measure

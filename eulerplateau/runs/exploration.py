@@ -73,7 +73,7 @@ def run_branches(
             special_points=spec.branches.special_points,
             unstable_modes=spec.branches.unstable_modes,
         )
-        rows = recorder.rows
+        rows = recorder.run.rows
         try:
             for point in points:
                 row = recorder.record(
@@ -89,8 +89,8 @@ def run_branches(
                     write_whole(path / "special_points.csv", _table(special))
                 on_row(row)
         finally:
-            recorder.totals |= {"points": len(rows), "special": len(special)}
-    return Exploration(path, tuple(rows), tuple(special), recorder.seconds)
+            recorder.run.totals |= {"points": len(rows), "special": len(special)}
+    return Exploration(path, tuple(rows), tuple(special), recorder.run.seconds)
 
 
 def _window(spec: RunSpec) -> tuple[float, float]:

@@ -8,15 +8,16 @@ later by others, diagram.png and pictures/shape_0000.png and so on.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import Disk, write_whole
 from eulerplateau.runs.shape_files import write_series, write_shape
-from eulerplateau.runs.table import Row, RowWriter
+from eulerplateau.runs.table import Record, Row, RowWriter
 
 # In run.json: without it a folder is not ours, and nothing in it is ever removed.
 _MARK = {"program": "eulerplateau"}
@@ -48,7 +49,7 @@ class RunFolder:
     leaves nothing half done, and a row in sweep.csv means its shape is there.
     """
 
-    def __init__(self, path: Path, name: str, row_type: type[Row]) -> None:
+    def __init__(self, path: Path, name: str, row_type: type[Any]) -> None:
         self.path = path
         self._shapes: list[tuple[int, float, str]] = []
         self._series = path / f"{name}.pvd"
@@ -60,7 +61,7 @@ class RunFolder:
         path: Path,
         summary: Mapping[str, object],
         name: str = "sweep",
-        row_type: type[Row] = Row,
+        row_type: type[Any] = Row,
     ) -> RunFolder:
         """Start a run in `path` with `summary` as its run.json; its table is `name`.csv.
 
@@ -86,15 +87,21 @@ class RunFolder:
         modes: Mapping[str, FloatArray] | None = None,
         rest_mesh: str | None = None,
     ) -> None:
-        """Add the shape `x` (n_v, 3), with its critical `modes`, and then its row.
+        """Add a film's shape `x` (n_v, 3), with its critical `modes`, and then its row.
 
-        `rest_mesh` is the SHA-256 of the mesh at rest, by default that of `mesh`.
+        `rest_mesh` is the SHA-256 of the mesh at rest, by default that of `mesh`. Raises
+        what `add` raises.
+        """
+        self.add(row, lambda path: write_shape(path, mesh, x, row, modes, rest_mesh))
+
+    def add(self, row: Record, write: Callable[[Path], None]) -> None:
+        """Add a shape, which `write` writes to the file it is given, and then its row.
 
         Raises OutputError if the disk is full or not writable; what was recorded before
         stays valid.
         """
         name = shape_name(row.step)
-        write_shape(self.path / name, mesh, x, row, modes, rest_mesh)
+        write(self.path / name)
         self._shapes.append((row.step, row.load, name))
         write_series(self._series, self._shapes, row.load_name)
         self._rows.append(row)

@@ -11,12 +11,19 @@ from pathlib import Path
 from typing import Any
 
 from eulerplateau.errors import MissingLibraryError, OutputError
-from eulerplateau.film import FILM_LOADS, SPRING_LOAD, TENSION, Load
+from eulerplateau.film import SPRING_LOAD
 from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.kinds import Kind, kind_of
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
 from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
 from eulerplateau.runs.states import between_planar, distinct_steps, stable_states
-from eulerplateau.runs.table import BranchRow, Row, columns, read_rows
+from eulerplateau.runs.table import (
+    LoadName,
+    Record,
+    Row,
+    columns,
+    read_rows,
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -26,7 +33,8 @@ class Run:
     Attributes
     ----------
     folder : Path
-    rows : of sweep.csv, or BranchRow of branches.csv
+    rows : of sweep.csv or branches.csv, Row or CellRow as the run follows a film or a cell
+    explored : bool, whether they are those of branches.csv
     name : str, the last parts of the folder's path, as many as tell the runs read together
     label : str, the name, and what of film, mesh and solver tells them
     about : what run.json says; empty if it says nothing
@@ -34,7 +42,8 @@ class Run:
     """
 
     folder: Path
-    rows: tuple[Row, ...]
+    rows: tuple[Any, ...]
+    explored: bool = False
     name: str = ""
     label: str = ""
     about: Mapping[str, Any] = field(default_factory=dict)
@@ -49,14 +58,19 @@ class Run:
         return f"<Run {name}: {len(self.rows)} {kind}{window}, {status}>"
 
     @property
-    def load(self) -> Load:
+    def load(self) -> LoadName:
         """The load its rows are read and shown over."""
         return self.rows[0].load_name if self.rows else SPRING_LOAD
+
+    @property
+    def kind(self) -> Kind:
+        """What it follows, a film or a cell."""
+        return kind_of(self.about)
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
         """Its branches; none if it is a sweep."""
-        return tuple(read_branches([r for r in self.rows if isinstance(r, BranchRow)]))
+        return tuple(read_branches(self.rows)) if self.explored else ()
 
     @cached_property
     def series(self) -> tuple[Branch, ...] | tuple[Leg, ...]:
@@ -64,7 +78,7 @@ class Run:
         return self.branches or tuple(read_legs(self.rows))
 
     @property
-    def first_leg(self) -> list[Row]:
+    def first_leg(self) -> list[Any]:
         """The converged rows of a sweep up to where its load turns, or of branch 0."""
         return [row for row in self.series[0].rows if row.converged]
 
@@ -76,7 +90,7 @@ class Run:
         bridge = next((branch for branch in self.branches if branch.bridges), None)
         return None if bridge is None else (bridge.loads.min(), bridge.loads.max())
 
-    def states(self) -> list[Row]:
+    def states(self) -> list[Any]:
         """Return one row for each distinct state, by load."""
         if self.branches:
             found = stable_states(
@@ -92,7 +106,7 @@ class Run:
             found = [row for row in self.rows if row.step in chosen]
         return sorted(found, key=lambda row: row.load)
 
-    def shape_path(self, row: Row) -> Path:
+    def shape_path(self, row: Record) -> Path:
         """Return the file of a row's shape."""
         return self.folder / shape_name(row.step)
 
@@ -132,8 +146,13 @@ def read_runs(folders: Sequence[Path]) -> list[Run]:
     """
     distinct = list({folder.resolve(): folder for folder in folders}.values())
     runs = [_read(folder) for folder in distinct]
-    if len({run.load for run in runs}) > 1:
-        runs = [_over(run, TENSION) for run in runs]
+    first = runs[0].kind if runs else None
+    for run in runs:
+        if run.kind != first:
+            problem = f"is the run of a {run.kind.name}: show one kind at a time"
+            raise OutputError(run.folder, problem)
+    if len({run.load.column for run in runs}) > 1:
+        runs = [_over(run, run.kind.common_load) for run in runs]
     names = _names(distinct)
     labels = _labels(names, runs)
     return [
@@ -144,24 +163,30 @@ def read_runs(folders: Sequence[Path]) -> list[Run]:
 
 def _read(folder: Path) -> Run:
     about = _about(folder)
-    column = _load(about).column
-    rows: Sequence[Row]
+    kind = kind_of(about)
+    column = kind.load(about).column
+    rows: Sequence[Record]
     special: dict[int, dict[str, str]] = {}
-    if (folder / "branches.csv").is_file():
-        rows = read_rows(folder / "branches.csv", BranchRow, column)
+    explored = (folder / "branches.csv").is_file()
+    if explored:
+        rows = read_rows(folder / "branches.csv", kind.branch_row, column)
         special = _special(folder / "special_points.csv")
     elif (folder / "sweep.csv").is_file():
-        rows = read_rows(folder / "sweep.csv", quantity=column)
+        rows = read_rows(folder / "sweep.csv", kind.row, column)
     else:
         problem = "is no run folder: it has neither a sweep.csv nor a branches.csv"
         raise OutputError(folder, problem)
     if not rows:
         raise OutputError(folder, "has no rows yet: there is nothing to show")
-    return Run(folder, tuple(rows), about=about, special=special)
+    return Run(folder, tuple(rows), explored, about=about, special=special)
 
 
-def _over(run: Run, load: Load) -> Run:
-    return replace(run, rows=tuple(replace(row, quantity=load.column) for row in run.rows))
+def _over(run: Run, column: str | None) -> Run:
+    """Return a run shown over another of its rows' loads, one that several have."""
+    if column is None:
+        problem = f"varies {run.load.text}, another run something else: show them apart"
+        raise OutputError(run.folder, problem)
+    return replace(run, rows=tuple(replace(row, quantity=column) for row in run.rows))
 
 
 def _about(folder: Path) -> Mapping[str, Any]:
@@ -170,17 +195,6 @@ def _about(folder: Path) -> Mapping[str, Any]:
     except (OSError, ValueError):
         return {}
     return about if isinstance(about, dict) else {}
-
-
-def _load(about: Mapping[str, Any]) -> Load:
-    """Return the load of the film that run.json names.
-
-    A table on its own is shown over kL3_alpha, which is right for any film.
-    """
-    try:
-        return FILM_LOADS[about["spec"]["film"]["model"]]
-    except (KeyError, TypeError):
-        return SPRING_LOAD
 
 
 def _special(path: Path) -> dict[int, dict[str, str]]:
@@ -209,18 +223,9 @@ def _names(folders: Sequence[Path]) -> list[str]:
 
 def _labels(names: Sequence[str], runs: Sequence[Run]) -> list[str]:
     """Return the names, and what run.json says wherever it says different things."""
-    notes = [_notes(run.about) for run in runs]
+    notes = [run.kind.notes(run.about) for run in runs]
     told = [set(column) != {column[0]} for column in zip(*notes, strict=True)]
     return [
         ", ".join([name, *(text for text, tell in zip(own, told, strict=True) if tell)])
         for name, own in zip(names, notes, strict=True)
     ]
-
-
-def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return what run.json says of the film, of the mesh's size and of the solver."""
-    try:
-        film, solver = about["spec"]["film"]["model"], about["spec"]["solver"]["name"]
-        return film, f"{about['mesh']['vertices']} vertices", solver
-    except (KeyError, TypeError):
-        return "", "", ""

@@ -19,18 +19,19 @@ from eulerplateau.film import FILM_LOADS, Load
 from eulerplateau.mesh import Disk, Measurer, generate, read_disk
 from eulerplateau.runs.folder import RunFolder
 from eulerplateau.runs.spec import RunSpec, StoredMesh
-from eulerplateau.runs.table import Row
+from eulerplateau.runs.table import Record, Row
 from eulerplateau.solvers import Equilibrium
 
 # Matrices here are as large as the loop: a second thread waits more than it works.
 BLAS_THREADS = 1
 
+T = TypeVar("T", bound=Record)
 R = TypeVar("R", bound=Row)
 
 
 @dataclass
-class Recorder(Generic[R]):
-    """Writes equilibria into a run folder: the row, and the shape before it.
+class OpenRun(Generic[T]):
+    """A run folder that fills: rows, and the shapes before them.
 
     Attributes
     ----------
@@ -39,12 +40,8 @@ class Recorder(Generic[R]):
     """
 
     folder: RunFolder
-    measurer: Measurer
-    load: Load
-    row_type: type[R]
     started: float
-    rest_mesh: str
-    rows: list[R] = field(default_factory=list)
+    rows: list[T] = field(default_factory=list)
     totals: dict[str, Any] = field(default_factory=dict)
 
     @property
@@ -52,15 +49,52 @@ class Recorder(Generic[R]):
         """Since the run began."""
         return time.perf_counter() - self.started
 
+
+@contextmanager
+def opened(
+    path: Path, name: str, row_type: type[T], summary: dict[str, Any], started: float
+) -> Iterator[OpenRun[T]]:
+    """Open the folder `path` for a run whose table is `name`.csv, and close it.
+
+    Interrupted or failing half-way it leaves a valid folder and says so in its run.json,
+    which otherwise is `summary` with what the run has come to.
+    """
+    summary = {**summary, "versions": _versions(), "machine": platform.machine()}
+    with (
+        threadpool_limits(BLAS_THREADS, user_api="blas"),
+        RunFolder.create(path, {**summary, "status": "running"}, name, row_type) as folder,
+    ):
+        summary["blas_threads"] = blas_threads()
+        run: OpenRun[T] = OpenRun(folder, started)
+        status = "interrupted"
+        try:
+            yield run
+            status = "finished"
+        finally:
+            totals = {**run.totals, "seconds": run.seconds}
+            folder.write_summary({**summary, "status": status, "totals": totals})
+
+
+@dataclass(frozen=True)
+class Recorder(Generic[R]):
+    """Writes a film's equilibria into a run."""
+
+    run: OpenRun[R]
+    measurer: Measurer
+    load: Load
+    row_type: type[R]
+    rest_mesh: str
+
     def record(
         self, found: Equilibrium, modes: Mapping[str, FloatArray], **columns: Any
     ) -> R:
         """Write an equilibrium, modes as its fields; `columns` are the row type's own."""
         measured = asdict(self.measurer.measure(found.shape))
-        row = make_row(len(self.rows), found, self.load, self.row_type, measured | columns)
+        step = len(self.run.rows)
+        row = make_row(step, found, self.load, self.row_type, measured | columns)
         disk = self.measurer.disk_of(found.shape)
-        self.folder.record(row, disk, found.shape.x, modes, self.rest_mesh)
-        self.rows.append(row)
+        self.run.folder.record(row, disk, found.shape.x, modes, self.rest_mesh)
+        self.run.rows.append(row)
         return row
 
 
@@ -68,25 +102,10 @@ class Recorder(Generic[R]):
 def recording(
     spec: RunSpec, disk: Disk, path: Path, name: str, row_type: type[R], started: float
 ) -> Iterator[Recorder[R]]:
-    """Open the folder `path` for a run whose table is `name`.csv, and close it.
-
-    Interrupted or failing half-way it leaves a valid folder and says so in its run.json.
-    """
-    summary = describe(spec, disk)
-    with (
-        threadpool_limits(BLAS_THREADS, user_api="blas"),
-        RunFolder.create(path, {**summary, "status": "running"}, name, row_type) as folder,
-    ):
-        summary["blas_threads"] = blas_threads()
+    """Open the folder `path` for a film's run, as `opened` does."""
+    with opened(path, name, row_type, describe(spec, disk), started) as run:
         load = FILM_LOADS[spec.film.model]
-        recorder = Recorder(folder, Measurer(disk), load, row_type, started, disk.digest)
-        status = "interrupted"
-        try:
-            yield recorder
-            status = "finished"
-        finally:
-            totals = {**recorder.totals, "seconds": recorder.seconds}
-            folder.write_summary({**summary, "status": status, "totals": totals})
+        yield Recorder(run, Measurer(disk), load, row_type, disk.digest)
 
 
 def blas_threads() -> list[int]:
@@ -119,12 +138,14 @@ def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
             "length": mesh.length,
         },
         "seed": spec.start.seed,
-        "versions": {
-            "eulerplateau": __version__,
-            "python": platform.python_version(),
-            **{name: version(name) for name in ("numpy", "scipy", "numba", "vtk", "gmsh")},
-        },
-        "machine": platform.machine(),
+    }
+
+
+def _versions() -> dict[str, str]:
+    return {
+        "eulerplateau": __version__,
+        "python": platform.python_version(),
+        **{name: version(name) for name in ("numpy", "scipy", "numba", "vtk", "gmsh")},
     }
 
 
@@ -156,6 +177,6 @@ def make_row(
     )
 
 
-def not_converged(rows: Sequence[Row]) -> list[int]:
+def not_converged(rows: Sequence[Record]) -> list[int]:
     """Return the steps of the rows that are not equilibria."""
     return [row.step for row in rows if not row.converged]

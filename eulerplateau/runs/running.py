@@ -9,7 +9,7 @@ from typing import Any
 from eulerplateau.errors import SpecError
 from eulerplateau.runs.plan import load_with
 from eulerplateau.runs.record import Run, read_run
-from eulerplateau.runs.spec import RunSpec
+from eulerplateau.runs.spec import RunSpec, load_run
 
 
 def run(
@@ -40,7 +40,7 @@ def run(
     """
     if isinstance(spec, str | Path):
         path = Path(spec)
-        chosen = load_with(path, settings or {})
+        chosen = load_with(path, settings or {}, load_run)
         name = f"{path.stem}-branches" if branches else path.stem
         target = path.with_name(name) if folder is None else Path(folder)
     else:

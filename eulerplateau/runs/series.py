@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby, pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,10 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.runs.states import is_planar
-from eulerplateau.runs.table import BranchRow, Row
+from eulerplateau.runs.table import BranchRecord, Record, Row
 
-Quantity = Callable[[Row], float | None]
+# Of a row, whatever the run follows: a film or a cell.
+Quantity = Callable[[Any], float | None]
 
 # Points drawn from one point of a branch to the next.
 _BETWEEN = 24
@@ -40,12 +42,13 @@ class Series(ABC):
 
     Attributes
     ----------
-    rows : in sequence; the first is where it starts, also if that is another series' row
+    rows : in sequence, of films or of cells (table.Record)
+        The first is where it starts, also if that is another series' row.
     first : int, the number of the first row of its own in the run's table
     start : int or None, the number of the row it starts at, if that is another series'
     """
 
-    rows: tuple[Row, ...]
+    rows: tuple[Any, ...]
     first: int = field(default=0, kw_only=True)
     start: int | None = field(default=None, kw_only=True)
 
@@ -123,7 +126,7 @@ class Branch(Series):
     origin : int or None, the number of the special point it starts from
     """
 
-    rows: tuple[BranchRow, ...]
+    rows: tuple[Any, ...]
     number: int = field(default=0, kw_only=True)
     origin: int | None = field(default=None, kw_only=True)
 
@@ -201,7 +204,7 @@ class Branch(Series):
         return fine
 
 
-def read_legs(rows: Sequence[Row]) -> list[Leg]:
+def read_legs(rows: Sequence[Record]) -> list[Leg]:
     """Split a sweep where its load turns; rows that are no two are one leg."""
     rises = (after.load >= row.load for row, after in pairwise(rows))
     found: list[Leg] = []
@@ -213,7 +216,7 @@ def read_legs(rows: Sequence[Row]) -> list[Leg]:
     return found or [Leg(tuple(rows))]
 
 
-def read_branches(rows: Sequence[BranchRow]) -> list[Branch]:
+def read_branches(rows: Sequence[BranchRecord]) -> list[Branch]:
     """Return the branches of a table, each continued back to where it starts from."""
     special: dict[int, int] = {}
     for place, row in enumerate(rows):

@@ -22,13 +22,14 @@ from eulerplateau.film import Load
 from eulerplateau.mesh import (
     Disk,
     Shape,
+    VtpFile,
     angle_defects,
     loop_frame,
     read_vtp,
     write_vtp,
     write_whole,
 )
-from eulerplateau.runs.table import Row
+from eulerplateau.runs.table import LoadName, Row
 
 # Field data of a shape file: of its row, and the SHA-256 of the mesh at rest in bytes.
 _OF_ITS_ROW = "step", "kL3_alpha", "sigma_hat", "energy"
@@ -114,13 +115,8 @@ def read_shape(path: str | Path) -> StoredShape:
     A sweep or a branch can be started from it: solve(problem, load, read_shape(path)).
     """
     path = Path(path)
-    try:
-        found = read_vtp(path)
-    except MeshError:
-        raise _not_a_shape(path) from None
+    found = _read(path, _OF_ITS_ROW)
     about = found.field_data
-    if len(found.lines) != 1 or not set(_OF_ITS_ROW) <= about.keys():
-        raise _not_a_shape(path)
     digest = about.get(_REST_MESH, np.empty(0))
     return StoredShape(
         x=found.points,
@@ -144,24 +140,38 @@ def read_shapes(paths: Sequence[Path]) -> ShapeSequence:
     tilings: list[tuple[int, IntArray]] = []
     loop: IntArray | None = None
     for path in paths:
-        shape = read_shape(path)
-        loop = shape.loop if loop is None else loop
-        if not np.array_equal(shape.loop, loop) or (x and len(shape.x) != len(x[0])):
+        shape = _read(path, ("step",))
+        line = shape.lines[0][:-1]
+        loop = line if loop is None else loop
+        if not np.array_equal(line, loop) or (x and len(shape.points) != len(x[0])):
             raise OutputError(path, f"has another mesh than {paths[0].name}")
         if not tilings or not np.array_equal(shape.triangles, tilings[-1][1]):
             tilings.append((len(x), shape.triangles))
-        if not np.isfinite(shape.x).all():
+        if not np.isfinite(shape.points).all():
             raise OutputError(path, "has positions that are not finite")
-        x.append(shape.x)
+        x.append(shape.points)
     assert loop is not None  # there are paths
     return ShapeSequence(np.array(x), loop, tuple(tilings))
+
+
+def _read(path: Path, of_its_row: tuple[str, ...]) -> VtpFile:
+    """Read a file with one closed line, and these fields of its row; else OutputError."""
+    try:
+        found = read_vtp(path)
+    except MeshError:
+        raise _not_a_shape(path) from None
+    if len(found.lines) != 1 or not set(of_its_row) <= found.field_data.keys():
+        raise _not_a_shape(path)
+    return found
 
 
 def _not_a_shape(path: Path) -> OutputError:
     return OutputError(path, "is not a whole shape file of a run")
 
 
-def write_series(path: Path, shapes: Sequence[tuple[int, float, str]], load: Load) -> None:
+def write_series(
+    path: Path, shapes: Sequence[tuple[int, float, str]], load: LoadName
+) -> None:
     """Write the .pvd series `path` over `shapes`: (step, load, file relative to `path`).
 
     The time ParaView shows is the load if the loads only rise or only fall,

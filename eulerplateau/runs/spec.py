@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -11,7 +12,10 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import MeshSpec
-from eulerplateau.settings import Settings, read_toml, validate
+from eulerplateau.settings import Model, Settings, read_toml, validate
+
+# Keys that name a file.
+FILE_KEYS = "mesh.file", "start.file", "cell.points"
 
 
 class StoredMesh(Settings):
@@ -154,14 +158,17 @@ class SweepSettings(Settings):
 
     def values(self) -> list[float]:
         """Return the values in the order in which they are swept."""
-        listed = [
-            [load] if isinstance(load, float) else load.values() for load in self.loads
-        ]
-        rising = sorted({value for values in listed for value in values})
-        if self.direction == "up":
-            return rising
-        falling = rising[::-1]
-        return falling if self.direction == "down" else rising + falling[1:]
+        return in_order(self.loads, self.direction)
+
+
+def in_order(loads: Sequence[float | Range | Refinement], direction: str) -> list[float]:
+    """Return all that `loads` list, each value once, rising, falling, or both in turn."""
+    listed = [[load] if isinstance(load, float) else load.values() for load in loads]
+    rising = sorted({value for values in listed for value in values})
+    if direction == "up":
+        return rising
+    falling = rising[::-1]
+    return falling if direction == "down" else rising + falling[1:]
 
 
 class SolverSettings(Settings):
@@ -261,17 +268,24 @@ class RunSpec(Settings):
 
 
 def load_run(path: Path, overrides: dict[str, Any]) -> RunSpec:
-    """Read a run specification, with `overrides` {dotted key: value} on top.
+    """Read the specification of a film's run; see `read_spec`."""
+    return read_spec(path, overrides, RunSpec)
 
-    A relative mesh or start file is looked for beside the specification. Raises SpecError.
+
+def read_spec(path: Path, overrides: dict[str, Any], model: type[Model]) -> Model:
+    """Read a specification, with `overrides` {dotted key: value} on top.
+
+    A relative file that it names is looked for beside it. Raises SpecError.
     """
     data = read_toml(path)
     for key, value in overrides.items():
         _override(data, key, value)
-    for section in (data.get("mesh"), data.get("start")):
-        if isinstance(section, dict) and isinstance(section.get("file"), str):
-            section["file"] = str(path.parent / section["file"])
-    return validate(data, RunSpec, str(path))
+    for key in FILE_KEYS:
+        name, _, entry = key.partition(".")
+        section = data.get(name)
+        if isinstance(section, dict) and isinstance(section.get(entry), str):
+            section[entry] = str(path.parent / section[entry])
+    return validate(data, model, str(path))
 
 
 def _override(data: dict[str, Any], key: str, value: Any) -> None:

@@ -48,7 +48,7 @@ def run_sweep(
     start, solver = start_shape(spec, disk), spec.solver
     neutral: list[int] = []
     with recording(spec, disk, path, "sweep", Row, started) as recorder:
-        rows = recorder.rows
+        rows = recorder.run.rows
         try:
             for found in sweep(
                 problem,
@@ -61,14 +61,14 @@ def run_sweep(
                 neutral += [row.step] if found.n_neutral else []
                 on_row(row)
         finally:
-            recorder.totals |= {
+            recorder.run.totals |= {
                 "loads": len(rows),
                 "not_converged": not_converged(rows),
                 "iterations": sum(row.iterations for row in rows),
                 "solver_seconds": sum(row.seconds for row in rows),
                 "neutral": neutral,
             }
-    return RunResult(path, tuple(rows), tuple(neutral), recorder.seconds)
+    return RunResult(path, tuple(rows), tuple(neutral), recorder.run.seconds)
 
 
 def _modes(spec: RunSpec, problem: Problem, found: Equilibrium) -> dict[str, FloatArray]:

@@ -2,15 +2,88 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from eulerplateau.errors import OutputError
 from eulerplateau.film import LOADS, SPRING_LOAD, Load
 from eulerplateau.solvers import Status
+
+
+class LoadName(Protocol):
+    """What the load of a row is called."""
+
+    @property
+    def column(self) -> str:
+        """Its column in every table."""
+
+    @property
+    def text(self) -> str:
+        """Its name in ASCII."""
+
+    @property
+    def symbol(self) -> str:
+        """Its name in Unicode."""
+
+    @property
+    def tex(self) -> str:
+        """Its name in TeX."""
+
+    @property
+    def label(self) -> str:
+        """Its name as a label of an axis."""
+
+
+class Record(Protocol):
+    """What a row has of whatever is followed in a parameter: a film, a cell."""
+
+    @property
+    def step(self) -> int:
+        """Its number in the run."""
+
+    @property
+    def n_unstable(self) -> int | None:
+        """The Morse index; None where it is not known."""
+
+    @property
+    def status(self) -> Status:
+        """How the solver ended."""
+
+    @property
+    def load(self) -> float:
+        """The parameter that is varied."""
+
+    @property
+    def load_name(self) -> LoadName:
+        """What that is called."""
+
+    @property
+    def converged(self) -> bool:
+        """Whether the row is an equilibrium to be trusted."""
+
+
+class BranchRecord(Record, Protocol):
+    """What a point of a branch has: see BranchRow."""
+
+    @property
+    def branch(self) -> int:
+        """The number of the branch."""
+
+    @property
+    def origin(self) -> int | None:
+        """The special point it starts from."""
+
+    @property
+    def special(self) -> int | None:
+        """The number of this special point."""
+
+    @property
+    def arclength(self) -> float:
+        """How far along the branch."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +156,8 @@ class BranchRow(Row):
     arclength: float
 
 
-def columns(row_type: type[Row]) -> tuple[str, ...]:
-    """Return the names of the columns of a table of such rows."""
+def columns(row_type: type[Any]) -> tuple[str, ...]:
+    """Return the names of the columns of a table of such rows: their fields."""
     return tuple(column.name for column in fields(row_type) if not column.kw_only)
 
 
@@ -97,7 +170,7 @@ _MAY_BE_EMPTY = {
     "n_unstable", "lowest_eigenvalue", "self_intersections", "origin", "special"
 }  # fmt: skip
 
-RowType = TypeVar("RowType", bound=Row)
+RowType = TypeVar("RowType", bound=Record)
 
 
 class RowWriter:
@@ -107,7 +180,7 @@ class RowWriter:
     cannot be written; a row that did not fit (disk full) is taken back.
     """
 
-    def __init__(self, path: Path, row_type: type[Row] = Row) -> None:
+    def __init__(self, path: Path, row_type: type[Any] = Row) -> None:
         self._path = path
         self._columns = columns(row_type)
         try:
@@ -121,7 +194,7 @@ class RowWriter:
             self.close()
             raise
 
-    def append(self, row: Row) -> None:
+    def append(self, row: Record) -> None:
         """Write `row`; floats by repr, so that they read back bit for bit."""
         self._write_line(
             ",".join(_cell(name, getattr(row, name)) for name in self._columns)
@@ -178,8 +251,9 @@ def read_rows(
     names = columns(row_type)
     if header != ",".join(names):
         raise OutputError(path, f"the first line should be {','.join(names)}")
+    made: Callable[..., RowType] = row_type
     return [
-        row_type(**_values(path, names, number, line), quantity=quantity)
+        made(**_values(path, names, number, line), quantity=quantity)
         for number, line in enumerate(lines, start=2)
     ]
 

@@ -108,7 +108,7 @@ class RunPictures:
         self._write("sweep", "gif", gif(frames, times))
 
     def _step(self, place: int) -> int:
-        return self.run.rows[place].step
+        return int(self.run.rows[place].step)
 
     def _picture(self, scene: Scene, place: int, shape: Shape, view: View) -> Pixels:
         values = self.fields.get(place)

@@ -1,0 +1,126 @@
+"""Rows of cells: sweep.csv and branches.csv of `eulerplateau cell`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from eulerplateau.cells import CellEquilibrium
+from eulerplateau.loop import edges_of
+from eulerplateau.solvers import Status
+
+
+@dataclass(frozen=True)
+class CellParameter:
+    """What is varied along a run of a cell; see table.LoadName."""
+
+    column: str
+    text: str
+    symbol: str
+    tex: str
+
+    @property
+    def label(self) -> str:
+        """The name as a label of an axis."""
+        return f"${self.tex}$"
+
+
+_SIGMA_TEX, _KS_TEX = r"\hat\sigma=\sigma R_0^3/\alpha", r"\hat k_s=k_sR_0^3/\alpha"
+CELL_PARAMETERS = {
+    "sigma_hat": CellParameter("sigma_hat", "sigma_hat", "σ̂", _SIGMA_TEX),  # noqa: RUF001
+    "ks_hat": CellParameter("ks_hat", "ks_hat", "k̂ₛ", _KS_TEX),
+}
+
+
+@dataclass(frozen=True)
+class CellRow:
+    """One state of a cell; its fields but the last, in this order, are the columns.
+
+    Units: lengths R_0, energies alpha / R_0, forces alpha / R_0^2, max_turning degrees.
+    Over the cell's adhesions kappa_adhesion, extension and traction are means, over its
+    sides kappa_mid is the least: below zero a side is inflected. largest_traction is that
+    of one adhesion, tangential the largest |(r - r_0).t|.
+    """
+
+    step: int
+    sigma_hat: float
+    ks_hat: float
+    beta_hat: float
+    energy: float
+    bending_energy: float
+    film_energy: float
+    adhesion_energy: float
+    line_energy: float
+    perimeter: float
+    area: float
+    kappa_adhesion: float
+    kappa_mid: float
+    extension: float
+    traction: float
+    largest_traction: float
+    tangential: float
+    n_unstable: int | None
+    lowest_eigenvalue: float | None
+    residual: float
+    iterations: int
+    seconds: float
+    status: Status
+    max_turning: float
+    quantity: str = field(default="sigma_hat", kw_only=True)
+
+    @property
+    def load(self) -> float:
+        """What is varied, by the name `quantity`."""
+        return float(getattr(self, self.quantity))
+
+    @property
+    def load_name(self) -> CellParameter:
+        """What that is called."""
+        return CELL_PARAMETERS[self.quantity]
+
+    @property
+    def converged(self) -> bool:
+        """Whether the row is an equilibrium to be trusted."""
+        return self.status is Status.CONVERGED
+
+
+@dataclass(frozen=True)
+class CellBranchRow(CellRow):
+    """One point of a branch of a cell: see BranchRow."""
+
+    branch: int
+    origin: int | None
+    special: int | None
+    arclength: float
+
+
+def cell_columns(found: CellEquilibrium) -> dict[str, Any]:
+    """Return all columns of a cell but its step."""
+    stability = found.stability
+    return {
+        "sigma_hat": found.sigma_hat,
+        "ks_hat": found.ks_hat,
+        "beta_hat": found.beta_hat,
+        "energy": found.energy,
+        "bending_energy": found.bending_energy,
+        "film_energy": found.film_energy,
+        "adhesion_energy": found.adhesion_energy,
+        "line_energy": found.line_energy,
+        "perimeter": found.perimeter,
+        "area": found.area,
+        "kappa_adhesion": float(found.kappa_adhesion.mean()),
+        "kappa_mid": float(found.kappa_mid.min()),
+        "extension": float(found.extensions.mean()),
+        "traction": float(found.traction.mean()),
+        "largest_traction": float(found.traction.max()),
+        "tangential": float(np.abs(found.tangential).max()),
+        "n_unstable": found.n_unstable,
+        "lowest_eigenvalue": None if stability is None else stability.lowest,
+        "residual": found.residual,
+        "iterations": found.iterations,
+        "seconds": found.seconds,
+        "status": found.status,
+        "max_turning": float(np.degrees(np.abs(edges_of(found.x).turning).max())),
+    }

@@ -1,0 +1,63 @@
+"""What runs follow, films or cells: how the tables of each are read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from eulerplateau.film import FILM_LOADS, SPRING_LOAD
+from eulerplateau.runs.table import BranchRow, LoadName, Row
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of run, by the name in its run.json.
+
+    Attributes
+    ----------
+    row, branch_row : the rows of sweep.csv and of branches.csv
+    load : what a run varies, by its run.json
+    common_load : the column to show runs over that vary different things; None if none
+    notes : what a run.json says that tells runs of one name apart
+    """
+
+    name: str
+    row: type[Any]
+    branch_row: type[Any]
+    load: Callable[[Mapping[str, Any]], LoadName]
+    common_load: str | None
+    notes: Callable[[Mapping[str, Any]], tuple[str, ...]]
+
+
+def kind_of(about: Mapping[str, Any]) -> Kind:
+    """Return the kind of run a run.json belongs to: a film's, unless it says otherwise."""
+    if about.get("kind") == "cell":
+        # Loaded for cells only.
+        from eulerplateau.runs.cell_kind import CELL
+
+        return CELL
+    return _FILM
+
+
+def _load(about: Mapping[str, Any]) -> LoadName:
+    """Return the load of the film that run.json names.
+
+    A table on its own is shown over kL3_alpha, which is right for any film.
+    """
+    try:
+        return FILM_LOADS[about["spec"]["film"]["model"]]
+    except (KeyError, TypeError):
+        return SPRING_LOAD
+
+
+def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return what run.json says of the film, of the mesh's size and of the solver."""
+    try:
+        film, solver = about["spec"]["film"]["model"], about["spec"]["solver"]["name"]
+        return film, f"{about['mesh']['vertices']} vertices", solver
+    except (KeyError, TypeError):
+        return "", "", ""
+
+
+_FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes)

@@ -72,14 +72,28 @@ class Cell:
         gaps = differences(self.sites.points)
         return float(np.hypot(gaps[:, 0], gaps[:, 1]).sum()) / self.size
 
-    def energy(self, sigma_hat: float, ks_hat: float) -> LoopEnergy:
-        """Return the energy at a contractility and a stiffness of the adhesions."""
+    @cached_property
+    def shares(self) -> FloatArray:
+        """The part (N,) of the sites' polygon that each of its sides is."""
+        gaps = differences(self.sites.points)
+        lengths = np.hypot(gaps[:, 0], gaps[:, 1])
+        return lengths / lengths.sum()
+
+    def energy(
+        self, sigma_hat: float, ks_hat: float, edge: float | None = None
+    ) -> LoopEnergy:
+        """Return the energy at a contractility and a stiffness of the adhesions.
+
+        It is good near loops whose shortest edge is about `edge` long, by default that of
+        the sites' polygon.
+        """
+        short = self.edge if edge is None else edge
         terms: dict[str, Term] = {
-            "bending": FreeBending(self.edge),
+            "bending": FreeBending(short),
             "film": PolygonArea(sigma_hat),
         }
         if self.beta_hat:
-            terms["line_tension"] = LineTension(self.beta_hat, self.edge)
+            terms["line_tension"] = LineTension(self.beta_hat, short)
         terms["adhesions"] = self.adhesions(ks_hat)
         weights = np.full(self.size, self.edge)
         return LoopEnergy(terms, EqualEdges(self.edges_per_side), weights, _no_free_motions)
@@ -123,3 +137,8 @@ class Cell:
 def _no_free_motions(x: FloatArray) -> FloatArray:
     """Return no motions (2 n, 0): adhesions hold the cell."""
     return np.zeros((x.size, 0))
+
+
+def shortest_edge(x: FloatArray) -> float:
+    """Return the length of the shortest edge of a loop (n, 2)."""
+    return float(edges_of(x).lengths.min())

@@ -8,7 +8,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.cells.cell import Cell
-from eulerplateau.cells.touching import touches
+from eulerplateau.cells.touching import collapsed, touches
 from eulerplateau.loop import FreeBending, edges_of
 from eulerplateau.mesh import polygon_area
 from eulerplateau.solvers import (
@@ -145,12 +145,16 @@ def measured(
     )
 
 
-def status_of(model: TangentModel, stability: Stability, searched: Status) -> Status:
+def status_of(
+    cell: Cell, model: TangentModel, stability: Stability, searched: Status
+) -> Status:
     """Return the status of the loop that a search has come to.
 
     A stall with balanced forces is an equilibrium all the same, if it is a minimum. Where
     the edge has met itself there is none, whatever the forces.
     """
+    if collapsed(model.x, cell.shares):
+        return Status.COLLAPSED
     if touches(model.x):
         return Status.TOUCHING
     balanced = model.residual <= RESIDUAL_TOLERANCE

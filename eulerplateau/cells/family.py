@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
 
@@ -16,7 +16,7 @@ from eulerplateau.branches import (
     explore_from,
     first_point,
 )
-from eulerplateau.cells.cell import Cell
+from eulerplateau.cells.cell import Cell, shortest_edge
 from eulerplateau.cells.equilibrium import CellEquilibrium, measured, status_of
 from eulerplateau.cells.solving import solve_cell
 from eulerplateau.cells.touching import touches
@@ -40,11 +40,13 @@ class CellFamily:
     ----------
     parameter : "load" for sigma_hat, "stiffness" for ks_hat
     fixed : float, the other one
+    edge : float, about how long the shortest edge is
     """
 
     cell: Cell
     parameter: str
     fixed: float
+    edge: float
 
     def __post_init__(self) -> None:
         """Refuse a parameter that a cell does not have."""
@@ -59,11 +61,11 @@ class CellFamily:
 
     def energy(self, value: float) -> LoopEnergy:
         """Return the energy at a value of the parameter."""
-        return self.cell.energy(*self.pair(value))
+        return self.cell.energy(*self.pair(value), self.edge)
 
     def near(self, x: FloatArray) -> CellFamily:
-        """Return the family itself: it is good everywhere."""
-        return self
+        """Return the family good where edges are as short as those of a loop (n, 2)."""
+        return replace(self, edge=shortest_edge(x))
 
     def released(self, x: FloatArray) -> CellFamily:
         """Return the family itself: a film in the plane has nothing to release."""
@@ -103,7 +105,7 @@ def cell_equilibrium(point: BranchPoint) -> CellEquilibrium:
         residual=point.model.residual,
         iterations=point.corrections,
         stability=point.stability,
-        status=status_of(point.model, point.stability, Status.CONVERGED),
+        status=status_of(family.cell, point.model, point.stability, Status.CONVERGED),
     )
 
 
@@ -138,7 +140,7 @@ def explore_cell(
     ------
     SpecError : for a wrong parameter or window, or a start that is no equilibrium in it
     """
-    family = CellFamily(cell, parameter, fixed)
+    family = CellFamily(cell, parameter, fixed, cell.edge)
     low, high = (float(end) for end in window)
     if not 0 < low < high:
         raise SpecError("window", f"found ({low:g}, {high:g}); should be 0 < low < high")
@@ -153,7 +155,7 @@ def explore_cell(
         largest_step=_LARGEST_STEP,
     )
     limits = Limits(special_points, unstable_modes, lambda point: touches(point.x))
-    return _explored(family, found.x, value, control, limits)
+    return _explored(family.near(found.x), found.x, value, control, limits)
 
 
 def _explored(

@@ -11,11 +11,10 @@ from numpy.typing import ArrayLike
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.cells.cell import Cell
+from eulerplateau.cells.cell import Cell, shortest_edge
 from eulerplateau.cells.equilibrium import CellEquilibrium, measured, status_of
 from eulerplateau.cells.touching import Apart, crosses_itself, strands_near
 from eulerplateau.errors import SpecError
-from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import DenseModels, Descent, Status, one_thread, stability
 
 _MAX_ITERATIONS = 500
@@ -75,7 +74,7 @@ def sweep_cell(
     for sigma_hat, ks_hat in values:
         found = solve_cell(cell, sigma_hat, ks_hat, start, max_iterations=max_iterations)
         yield found
-        if found.status in (Status.TOUCHING, Status.NOT_FINITE):
+        if found.status in (Status.TOUCHING, Status.COLLAPSED, Status.NOT_FINITE):
             return
         start = found
 
@@ -88,28 +87,32 @@ def _descended(
     limit: int,
     observe: Callable[[FloatArray], None],
 ) -> CellEquilibrium:
-    models = DenseModels(_guarded(cell.energy(sigma, ks), x))
+    """Descend from a loop (n, 2), in an energy made anew where edges have changed."""
+    guard, iterations = Apart(cell.shares, close=strands_near(x)), 0
     try:
-        state, searched = Descent(models, limit, observe).run(x)
+        while True:
+            energy = cell.energy(sigma, ks, shortest_edge(x))
+            energy = replace(energy, terms={**energy.terms, "apart": guard})
+            models = DenseModels(energy)
+            state, searched = Descent(models, limit - iterations, observe).run(x)
+            iterations, x = iterations + state.iteration, state.model.x
+            broken_off = searched is Status.ITERATION_LIMIT and iterations < limit
+            if not (broken_off and guard.holds(x)):
+                break
         spectrum = state.stability or stability(state.model)
     except (LinAlgError, ValueError):
         # Numbers that overflow make matrices that are not finite.
         return measured(cell, x, sigma, ks)
     return measured(
         cell,
-        state.model.x,
+        x,
         sigma,
         ks,
         residual=state.model.residual,
-        iterations=state.iteration,
+        iterations=iterations,
         stability=spectrum,
-        status=status_of(state.model, spectrum, searched),
+        status=status_of(cell, state.model, spectrum, searched),
     )
-
-
-def _guarded(energy: LoopEnergy, x: FloatArray) -> LoopEnergy:
-    """Return an energy whose descent from x (n, 2) stops where the loop meets itself."""
-    return replace(energy, terms={**energy.terms, "apart": Apart(close=strands_near(x))})
 
 
 def _start(cell: Cell, start: CellStart | None) -> FloatArray:

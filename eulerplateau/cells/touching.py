@@ -1,7 +1,9 @@
-"""Where the edge of a cell meets itself, beyond which no cell goes.
+"""Where a cell ends: its edge meets itself, or two of its adhesions meet.
 
 The area of a film is unsigned: where the edge has crossed itself, the polygon's signed area
-counts a lobe that runs clockwise as negative, and the energy has no lower bound.
+counts a lobe that runs clockwise as negative, and the energy has no lower bound. As sides
+have free lengths, adhesions slide along the edge; what is left where two of them have met
+is a side without length.
 """
 
 from __future__ import annotations
@@ -20,6 +22,8 @@ _TURNING_BACK = 6
 # Strands touch that come within one polygon edge of each other. A descent that has come
 # within a little more is at its end.
 _REACH, _AT_THE_END = 1.0, 1.05
+# A side has collapsed that has less than this part of its share of the perimeter.
+_COLLAPSED = 1e-2
 
 
 def crosses_itself(x: FloatArray) -> bool:
@@ -41,17 +45,25 @@ def touches(x: FloatArray) -> bool:
     return strands_near(x) or crosses_itself(x)
 
 
-@dataclass(frozen=True)
+def collapsed(x: FloatArray, shares: FloatArray) -> bool:
+    """Return whether a side of a loop (n, 2) has lost its share (N,) of the perimeter."""
+    sides = edges_of(x).lengths.reshape(len(shares), -1).sum(axis=1)
+    return bool((sides < _COLLAPSED * shares * sides.sum()).any())
+
+
+@dataclass(frozen=True, eq=False)
 class Apart(Term):
     """No energy, but no way through: strands of a loop (n, 2) do not pass each other.
 
     Attributes
     ----------
+    shares : (N,) float, the sides' parts of the perimeter where they are straight
     close : bool
         Whether they may come near each other, though not cross: for a loop that starts
         so, as a polygon with a corner as sharp as a needle does.
     """
 
+    shares: FloatArray
     close: bool = False
 
     def force(self, x: FloatArray) -> FloatArray:
@@ -70,5 +82,5 @@ class Apart(Term):
         return 0.0
 
     def holds(self, x: FloatArray) -> bool:
-        """Return whether the strands of a loop are clear of each other."""
-        return self.close or not strands_near(x)
+        """Return whether strands are clear of each other, and adhesions of their next."""
+        return (self.close or not strands_near(x)) and not collapsed(x, self.shares)

@@ -33,7 +33,10 @@ _CHAIN = np.kron([[-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]], np.eye(2))
 
 @dataclass(frozen=True)
 class FreeBending(Term):
-    """sum_v phi_v^2 / s_v of a polygon (n, 2) with edges about as long as `edge`."""
+    """sum_v phi_v^2 / s_v of a polygon (n, 2) whose shortest edge is about `edge` long.
+
+    That length says what rounding does to the force; the term is good to a factor of two.
+    """
 
     edge: float
 
@@ -87,6 +90,11 @@ class FreeBending(Term):
         s, longer = edges.means, after.means
         by_angle = more * (turning + new) / longer
         return float((by_angle - turning**2 * grown / (s * longer)).sum())
+
+    def holds(self, x: FloatArray) -> bool:
+        """Return whether the shortest edge is still about as long."""
+        shortest = float(edges_of(x).lengths.min())
+        return 0.5 * self.edge <= shortest <= 2 * self.edge
 
 
 def _edge_hessians(edges: Edges) -> FloatArray:

@@ -14,7 +14,7 @@ from eulerplateau.loop.loop import backward_differences
 
 @dataclass(frozen=True)
 class LineTension(Term):
-    """tension * perimeter of a polygon (n, 2) with edges about as long as `edge`."""
+    """tension * perimeter of a polygon (n, 2) whose shortest edge is about `edge` long."""
 
     tension: float
     edge: float

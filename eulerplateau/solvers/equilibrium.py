@@ -36,6 +36,7 @@ class Status(Enum):
     UNRESOLVED = "unresolved"
     PINCHED = "pinched"
     TOUCHING = "touching"
+    COLLAPSED = "collapsed"
 
     @property
     def advice(self) -> str:
@@ -51,6 +52,7 @@ _ADVICE = {
     Status.NOT_FINITE: "the start is not finite, or the energy overflowed: a smaller load",
     Status.PINCHED: "two strands of the loop meet: no film spans what is between them",
     Status.TOUCHING: "the edge meets itself: a smaller load, or softer adhesions",
+    Status.COLLAPSED: "two adhesions have met: leave one out, or make them stiffer",
     Status.UNRESOLVED: "the loop turns by over 30 degrees at a vertex: use a finer mesh",
 }
 

@@ -41,7 +41,7 @@ def plot_area_fit(
     the level of the fit's intervals. Raises OutputError if `path` cannot be written.
     """
     measured = np.asarray(area)
-    bars = error
+    bars = None if error is None else np.asarray(error)
     if fit.noise is not None:
         bars = fit.noise * (measured if fit.relative else np.ones_like(measured))
     k = np.geomspace(min(stiffness) / _BEYOND, max(stiffness) * _BEYOND, 300)

@@ -140,16 +140,18 @@ def fit_areas(
     log_sigma, log_alpha = (values if np.isfinite(values[:2]).any() else best.theta)[:2]
     shift = np.log([unit_k, unit_k * unit_length**3, unit_length])
     values, ends = values + shift, ends + shift[:, None]
-    estimates = [
-        Estimate(*(_exp(number) for number in (value, *pair)))
-        for value, pair in zip(values, ends, strict=True)
-    ]
+    sigma, alpha, rest_estimate = (
+        Estimate(_exp(value), _exp(low), _exp(high))
+        for value, (low, high) in zip(values, ends, strict=True)
+    )
     if rest_radius is not None:
-        estimates[2] = Estimate(*3 * (float(rest_radius),))
+        rest_estimate = Estimate(*3 * (float(rest_radius),))
     felt = best.size > _UNFELT * sqrt(variance)
     spread = sqrt(variance) * (1.0 if relative else unit_area)
     return AreaFit(
-        *estimates,
+        sigma,
+        alpha,
+        rest_estimate,
         xi=_exp((log_alpha - log_sigma) / 3) * unit_length,
         level=level,
         noise=spread if errors is None else None,

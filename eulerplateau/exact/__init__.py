@@ -6,6 +6,7 @@
     tangent_angle/  `relax_in_plane`: those without contact, downhill from a start
     conformal/      `relax`: films in space, downhill from a start; their branches and
                     their stability (docs/true-film.md)
+    cell/           round cells on a continuous adhesion, and their fit (docs/cells.md)
     checks.py       what is asked of their arguments
 
 Of films, lengths are in units of L, energies in alpha/L; a tension is sigma_hat =

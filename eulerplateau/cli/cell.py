@@ -5,6 +5,8 @@ from __future__ import annotations
 import click
 
 from eulerplateau.cli.cell_fit import fit
+from eulerplateau.cli.cell_runs import branches, sweep
+from eulerplateau.cli.cell_shape import shape
 
 
 @click.group()
@@ -12,4 +14,7 @@ def cell() -> None:
     """Cells that adhere to soft substrates, as contractile films."""
 
 
+cell.add_command(branches)
 cell.add_command(fit)
+cell.add_command(shape)
+cell.add_command(sweep)

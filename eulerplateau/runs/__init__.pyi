@@ -1,3 +1,10 @@
+from .cell_runs import (
+    CellRun as CellRun,
+    run_cell_branches as run_cell_branches,
+    run_cell_sweep as run_cell_sweep,
+)
+from .cell_spec import CellRunSpec as CellRunSpec, load_cell_run as load_cell_run
+from .cell_table import CellBranchRow as CellBranchRow, CellRow as CellRow
 from .examples import write_examples as write_examples
 from .exploration import Exploration as Exploration, run_branches as run_branches
 from .folder import shape_name as shape_name

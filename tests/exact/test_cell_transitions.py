@@ -48,7 +48,7 @@ def test_fold_is_where_the_stable_cell_ends_and_an_eigenvalue_vanishes(n):
     lowest = []
     for off in (1e-4, 1e-6):
         stable, unstable = smooth_cells(n, sigma, fold.ks_hat * (1 - off))
-        assert (stable.n_unstable, unstable.n_unstable) == (0, 1)
+        assert (stable.symmetric_index, unstable.symmetric_index) == (0, 1)
         lowest.append(np.linalg.eigvalsh(stable._jet.curvature)[0])
     assert np.log10(lowest[0] / lowest[1]) == pytest.approx(1.0, abs=0.02)
     assert smooth_cells(n, sigma, fold.ks_hat * 1.0001) == ()
@@ -106,7 +106,7 @@ def test_line_of_folds_is_smooth_and_ends_at_infinity_both_ways():
     off = np.array(limit) / strongest_pull(3) - 1
     # The extension is missing by one part in y = sigma_hat^(1/3).
     assert np.log2(off[0] / off[1]) == pytest.approx(1.0, abs=0.05)
-    assert regular_cell(3, rigid_fold(3).sigma_hat * 0.99, 1e9).n_unstable == 0
+    assert regular_cell(3, rigid_fold(3).sigma_hat * 0.99, 1e9).symmetric_index == 0
 
 
 @pytest.mark.parametrize("n", [2, 3, 4, 8])

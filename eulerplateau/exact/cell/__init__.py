@@ -7,6 +7,7 @@
                        boundary-value problem; side.py: half a side, by polynomials
     tethered.py        all shapes of a regular cell on one curve
     transitions.py     inflection and folds, located on it
+    stability.py       against all displacements; breaking.py: where symmetry is lost
     stars.py           concave cells with cusps, and their protrusions
     arcs.py            the limit without bending
     approximations.py  the paper's formulas, to be measured

@@ -8,6 +8,10 @@ from .approximations import (
 )
 from .arcs import ArcCell as ArcCell, arc_cell as arc_cell
 from .area_fit import AreaFit as AreaFit, Estimate as Estimate, fit_areas as fit_areas
+from .breaking import (
+    SymmetryBreaking as SymmetryBreaking,
+    symmetry_breaking as symmetry_breaking,
+)
 from .regular import (
     CellStatus as CellStatus,
     RegularCell as RegularCell,

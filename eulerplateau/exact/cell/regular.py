@@ -22,6 +22,7 @@ from scipy.optimize import brentq
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell.side import HalfSide, Jet, circle
+from eulerplateau.exact.cell.stability import Waves
 from eulerplateau.exact.cell.tethered import free_energy, is_resolved
 from eulerplateau.exact.checks import finite, whole_number
 
@@ -64,8 +65,7 @@ class RegularCell:
         return (
             f"<RegularCell on {self.side.adhesions} adhesions, sigma_hat "
             f"{self.sigma_hat:g}, ks_hat {self.ks_hat:g}: {self.status}, perimeter "
-            f"{self.perimeter:.9g}, traction {self.traction:.9g}, "
-            f"{self.n_unstable} unstable>"
+            f"{self.perimeter:.9g}, traction {self.traction:.9g}>"
         )
 
     @property
@@ -120,10 +120,20 @@ class RegularCell:
         along = self.outline(64) @ np.array([np.sin(angle), -np.cos(angle)])
         return self._finite(float(np.ptp(along)))
 
-    @property
+    @cached_property
     def n_unstable(self) -> int:
-        """Negative eigenvalues of the second variation within the cell's own symmetry."""
+        """The Morse index: negative eigenvalues of the second variation."""
+        return self.waves.n_unstable
+
+    @property
+    def symmetric_index(self) -> int:
+        """Those of them within the cell's own symmetry."""
         return int(np.sum(np.linalg.eigvalsh(self._jet.curvature) < 0))
+
+    @cached_property
+    def waves(self) -> Waves:
+        """The second variation against all displacements, wave by wave."""
+        return Waves(self.side, self.sigma_hat, self.ks_hat, self.beta_hat)
 
     @cached_property
     def _jet(self) -> Jet:
@@ -160,7 +170,9 @@ def cell_energy(side: HalfSide, sigma: float, stiffness: float, beta: float) -> 
 def regular_cell(
     adhesions: int, sigma_hat: float, ks_hat: float, beta_hat: float = 0.0
 ) -> RegularCell:
-    """Return the stable smooth cell that hangs together with the circle.
+    """Return the smooth cell that hangs together with the circle.
+
+    It is stable within its own symmetry; n_unstable tells about all displacements.
 
     The substrate is made stiffer step by step, from one so weak that the cell is a circle.
     A cell that finds no shape next to the last one on the way is COLLAPSED: it has passed

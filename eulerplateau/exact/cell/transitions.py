@@ -33,6 +33,8 @@ from eulerplateau.exact.checks import finite, whole_number
 
 # c of the circle is 1; folds lie where it is lower, and never as low as this.
 _ROUND, _LOWEST = 1.0, -1.0
+# How far from the shape of a rigid substrate, where ks_hat is infinite, a stretch ends.
+_NEXT_TO_RIGID = 1e-6
 
 
 @dataclass(frozen=True)
@@ -153,33 +155,60 @@ def strongest_pull(adhesions: int) -> float:
     return 0.5 * _shape(n, _ends_of_folds(n)[1]).force
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """The stable shapes at one contractility: from the circle to a fold, or to rigidity.
+
+    Attributes
+    ----------
+    round, end : float, c at the circle and where the stretch ends, below it
+    """
+
+    adhesions: int
+    y: float
+    round: float
+    end: float
+
+    def at(self, c: float) -> Transition:
+        """Return the cell with c in mid-side and the substrate it belongs to."""
+        return _transition(_shape(self.adhesions, c), self.y)
+
+
+def stable_stretch(adhesions: int, sigma_hat: float) -> Stretch:
+    """Return the symmetric shapes that are stable at sigma_hat > 1, as far as these go."""
+    n, y = adhesions, float(np.cbrt(sigma_hat))
+    top = fold_stiffness(n, sigma_hat)
+    if top is not None:
+        return Stretch(n, y, _ROUND, top.cell.kappa_mid / y)
+    # The radius grows as c falls, up to that of the adhesions.
+    rigid = _root(n, lambda shape: shape.radius - y, _ends_of_folds(n)[0], _ROUND)
+    return Stretch(n, y, _ROUND, rigid + _NEXT_TO_RIGID * (_ROUND - rigid))
+
+
 def smooth_cells(
     adhesions: int, sigma_hat: float, ks_hat: float
 ) -> tuple[RegularCell, ...]:
     """Return the smooth cells that pull on their adhesions, the stable one first.
 
     There are two below the fold, one below `rigid_fold`, none beyond: for sigma_hat > 1.
+    Stable is meant within the cell's symmetry.
     """
     n = whole_number("adhesions", adhesions, 2)
     sigma, k = _positive("sigma_hat", sigma_hat), _positive("ks_hat", ks_hat)
-    y = float(np.cbrt(sigma))
-    if y <= 1.0:
+    if sigma <= 1.0:
         raise SpecError("sigma_hat", f"found {sigma:g}; should be above 1: cells pull")
+    stretch = stable_stretch(n, sigma)
+    y, end = stretch.y, stretch.end
+    brackets = [(end, _ROUND)]
+    fold = fold_stiffness(n, sigma)
+    if fold is not None:
+        if k > fold.ks_hat:
+            return ()
+        brackets.append((_root(n, lambda shape: shape.force, 2 * _LOWEST, end), end))
 
     def excess(shape: Tethered) -> float:
         return shape.force * y**3 - 2 * k * (y - shape.radius)
 
-    top = fold_stiffness(n, sigma)
-    if top is None:
-        # The radius grows up to y as c falls: the first root is below it.
-        bottom = _root(n, lambda shape: shape.radius - y, _ends_of_folds(n)[0], _ROUND)
-        brackets = [(bottom, _ROUND)]
-    elif k > top.ks_hat:
-        return ()
-    else:
-        at_fold = top.cell.side.kappa_mid / y
-        slack = _root(n, lambda shape: shape.force, 2 * _LOWEST, at_fold)
-        brackets = [(at_fold, _ROUND), (slack, at_fold)]
     shapes = [_shape(n, _root(n, excess, *pair)) for pair in brackets]
     return tuple(_transition(shape, y).cell for shape in shapes)
 

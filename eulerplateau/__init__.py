@@ -4,7 +4,7 @@
 
 Here is what one calls from Python; each name is loaded when it is first used. The rooms
 behind it, from the ground up: `exact` (films without a mesh), `loop`, `mesh`, `film`,
-`solvers`, `branches`, `runs`, `pictures`, `cli`.
+`solvers`, `branches`, `cells`, `runs`, `pictures`, `cli`.
 """
 
 import lazy_loader

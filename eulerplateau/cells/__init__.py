@@ -3,7 +3,7 @@
     adhesion_sites.py  where a cell adheres: `regular_sites`, `read_sites`
     cell.py         the cell: its energy, and where to start from
     solving.py      `solve_cell` and `sweep_cell`; equilibrium.py: what comes out
-    touching.py     where the edge meets itself, beyond which no cell goes
+    touching.py     where a cell ends: its edge meets itself, or two adhesions meet
     family.py       branches in the contractility or the stiffness: `explore_cell`
     regular.py      what is symmetric of a cell on a regular polygon
 

@@ -113,9 +113,7 @@ def _is_number(field: str) -> bool:
     return True
 
 
-def _check(
-    path: str, points: FloatArray, weights: FloatArray, numbers: list[int]
-) -> None:
+def _check(path: str, points: FloatArray, weights: FloatArray, numbers: list[int]) -> None:
     """Raise SpecError unless the points are corners of a polygon that is simple."""
     ahead = np.roll(points, -1, axis=0)
     gaps = np.hypot(*(ahead - points).T)

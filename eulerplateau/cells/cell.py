@@ -31,7 +31,10 @@ class Cell:
 
     with exterior angles phi, area A and perimeter P (eq. cfm, made discrete). Edges of one
     side are equal: longer ones would bend more cheaply, and gain energy by sliding past
-    the adhesions. The length of each side is free.
+    the adhesions. The length of each side is free, so that an adhesion slides
+    along the edge. What resists is its spring; one much softer than the error of the
+    discretisation, about the bending energy times the square of an edge in units of the
+    radius of curvature, lets sides grow at their neighbours' expense.
 
     Attributes
     ----------
@@ -77,7 +80,8 @@ class Cell:
         """The part (N,) of the sites' polygon that each of its sides is."""
         gaps = differences(self.sites.points)
         lengths = np.hypot(gaps[:, 0], gaps[:, 1])
-        return lengths / lengths.sum()
+        shares: FloatArray = lengths / lengths.sum()
+        return shares
 
     def energy(
         self, sigma_hat: float, ks_hat: float, edge: float | None = None

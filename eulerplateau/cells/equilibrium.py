@@ -95,9 +95,9 @@ class CellEquilibrium:
         """Return one line: where, energy, status, Morse index."""
         index = "" if self.n_unstable is None else f", {self.n_unstable} unstable"
         return (
-            f"<CellEquilibrium at sigma_hat {self.sigma_hat:.6g}, ks_hat {self.ks_hat:.6g}: "
-            f"energy {self.energy:.9g}, {self.status.value}{index}, "
-            f"residual {self.residual:.1e}>"
+            f"<CellEquilibrium at sigma_hat {self.sigma_hat:.6g}, "
+            f"ks_hat {self.ks_hat:.6g}: energy {self.energy:.9g}, "
+            f"{self.status.value}{index}, residual {self.residual:.1e}>"
         )
 
 

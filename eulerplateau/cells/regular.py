@@ -42,7 +42,9 @@ def symmetric_index(found: CellEquilibrium) -> int:
     """
     cell = found.cell
     centre, operations = _operations(cell)
-    off = max(float(np.abs(g(found.x - centre) - found.x + centre).max()) for g in operations)
+    off = max(
+        float(np.abs(g(found.x - centre) - found.x + centre).max()) for g in operations
+    )
     if off > _SYMMETRIC * float(np.abs(cell.sites.points - centre).max()):
         raise SpecError("cell", f"is not symmetric: its images differ by {off:.1g}")
     with one_thread():

@@ -34,10 +34,11 @@ class Edges:
 
     @property
     def turning(self) -> FloatArray:
-        """Exterior angles (n,) of edge v against edge v - 1, in (-pi, pi], left positive."""
+        """Angles (n,) from edge v - 1 to edge v, in (-pi, pi]; left is positive."""
         before = shifted(self.tangents)
         along = (before * self.tangents).sum(axis=1)
-        return np.arctan2(_cross(before, self.tangents), along)
+        turning: FloatArray = np.arctan2(_cross(before, self.tangents), along)
+        return turning
 
     @property
     def means(self) -> FloatArray:
@@ -75,15 +76,16 @@ def length_changes(before: Edges, step: FloatArray) -> FloatArray:
     moved = differences(step)
     after = before.vectors + moved
     grown = ((before.vectors + after) * moved).sum(axis=1)
-    lengths: FloatArray = before.lengths + np.hypot(after[:, 0], after[:, 1])
-    return grown / lengths
+    changes: FloatArray = grown / (before.lengths + np.hypot(after[:, 0], after[:, 1]))
+    return changes
 
 
 def rotations(before: Edges, step: FloatArray) -> FloatArray:
-    """Return the angles (n,) in (-pi, pi] by which a step (n, 2) of the vertices turns edges."""
+    """Return by which angle (n,), in (-pi, pi], a step (n, 2) turns each edge."""
     moved = differences(step)
     along = (before.vectors * (before.vectors + moved)).sum(axis=1)
-    return np.arctan2(_cross(before.vectors, moved), along)
+    turned: FloatArray = np.arctan2(_cross(before.vectors, moved), along)
+    return turned
 
 
 def length_hessian(edges: Edges, weights: FloatArray) -> FloatArray:
@@ -110,7 +112,7 @@ def scattered(n: int, vertices: IntArray, blocks: FloatArray) -> FloatArray:
     """
     places = (2 * vertices[:, :, None] + np.arange(2)).reshape(len(vertices), -1)
     entries = 2 * n * places[:, :, None] + places[:, None, :]
-    total = np.bincount(entries.ravel(), blocks.ravel(), minlength=4 * n * n)
+    total: FloatArray = np.bincount(entries.ravel(), blocks.ravel(), 4 * n * n)
     return total.reshape(2 * n, 2 * n)
 
 

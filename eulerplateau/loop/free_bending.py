@@ -101,8 +101,9 @@ def _edge_hessians(edges: Edges) -> FloatArray:
     """Return the second derivatives (n, 4, 4) of phi_v^2 / s_v by edges v - 1 and v."""
     before = edges.shifted
     phi, s = edges.turning[:, None, None], edges.means[:, None, None]
-    by_angle = np.hstack([-before.normals / before.lengths[:, None],
-                          edges.normals / edges.lengths[:, None]])
+    by_angle = np.hstack(
+        [-before.normals / before.lengths[:, None], edges.normals / edges.lengths[:, None]]
+    )
     by_length = 0.5 * np.hstack([before.tangents, edges.tangents])
     mixed = _outer(by_angle, by_length)
     total: FloatArray = (2 / s) * _outer(by_angle, by_angle)

@@ -23,6 +23,7 @@ ROOMS = (
     "film",
     "solvers",
     "branches",
+    "cells",
     "runs",
     "pictures",
 )

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.loop.loop import differences
@@ -58,9 +59,11 @@ def shifted(rows: FloatArray) -> FloatArray:
 
 
 def edges_of(x: FloatArray) -> Edges:
-    """Return the edges of a polygon (n, 2), none of which is a point."""
+    """Return the edges of a polygon (n, 2); LinAlgError where one has no length."""
     vectors = differences(x)
     lengths = np.hypot(vectors[:, 0], vectors[:, 1])
+    if not lengths.min() > 0:
+        raise LinAlgError("an edge of the loop has no length")
     tangents = vectors / lengths[:, None]
     normals = np.empty_like(tangents)
     normals[:, 0], normals[:, 1] = -tangents[:, 1], tangents[:, 0]

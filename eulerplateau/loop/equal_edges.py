@@ -14,6 +14,8 @@ from eulerplateau.loop.edges import Edges, edges_of, length_hessian
 _PROJECTION_STEPS = 30
 # Edges that differ by less than this, relative to the longest, may be equal to rounding.
 _SMALL = 1e-12
+# Vertices farther than this from their places, in edges, are spread along the polygon.
+_FAR = 0.2
 
 
 @dataclass(frozen=True)
@@ -55,28 +57,52 @@ class EqualEdges:
         """Return a near loop with equal edges, to rounding; None if it is lost.
 
         Gauss-Newton, the ends of the sides held still: each side's equations J J^T meet
-        their two next neighbours only, and a banded Cholesky costs O(n).
+        their two next neighbours only, and a banded Cholesky costs O(n). It converges
+        where vertices have less than an edge to go; from farther they are spread along
+        the polygon first.
         """
         error = np.inf
         for _ in range(_PROJECTION_STEPS):
-            if not np.isfinite(x).all():
-                return None
-            edges = edges_of(x)
-            if edges.lengths.min() <= 0:
-                return None
-            excess = self._excess(edges)
-            previous, error = error, float(np.abs(excess).max() / edges.lengths.max())
-            # Quadratic convergence ends where rounding begins: then error stops falling.
-            if error < 1e-15 or (error < _SMALL and error >= 0.25 * previous):
-                return x
-            rows = self._rows(edges)
-            rows[:, 0, 0] = rows[:, -1, 2] = 0.0
             try:
-                pull = solveh_banded(_normal_bands(rows), excess.ravel(), lower=True)
+                edges = edges_of(x)
+                excess = self._excess(edges)
+                previous = error
+                error = float(np.abs(excess).max() / edges.lengths.max())
+                # Quadratic convergence ends where rounding begins: then error stops falling.
+                if error < 1e-15 or (error < _SMALL and error >= 0.25 * previous):
+                    return x
+                if self._shift(edges) > _FAR:
+                    x = self._spread(x, edges)
+                else:
+                    x = x - self._correction(edges, excess)
             except (LinAlgError, ValueError):
                 return None
-            x = x - self._pulled(rows, pull, len(x))
         return x if error < _SMALL else None
+
+    def _shift(self, edges: Edges) -> float:
+        """Return how far a vertex is from its place along its side, in edges."""
+        lengths = edges.lengths.reshape(-1, self.per_side)
+        steps = lengths / lengths.mean(axis=1, keepdims=True) - 1
+        return float(np.abs(np.cumsum(steps, axis=1)).max())
+
+    def _spread(self, x: FloatArray, edges: Edges) -> FloatArray:
+        """Return vertices (n, 2) at equal distances along each side of a polygon."""
+        m, spread = self.per_side, np.empty_like(x)
+        closed = np.vstack([x, x[:1]])
+        for start in range(0, len(x), m):
+            places = np.append(0.0, np.cumsum(edges.lengths[start : start + m]))
+            wanted = places[-1] * np.arange(m) / m
+            for axis in range(2):
+                corners = closed[start : start + m + 1, axis]
+                spread[start : start + m, axis] = np.interp(wanted, places, corners)
+        return spread
+
+    def _correction(self, edges: Edges, excess: FloatArray) -> FloatArray:
+        """Return the least move (n, 2) of inner vertices that takes c away, linearly."""
+        rows = self._rows(edges)
+        rows[:, 0, 0] = rows[:, -1, 2] = 0.0
+        pull = solveh_banded(_normal_bands(rows), excess.ravel(), lower=True)
+        return self._pulled(rows, pull, len(edges.lengths))
 
     def _excess(self, edges: Edges) -> FloatArray:
         return np.diff(edges.lengths.reshape(-1, self.per_side), axis=1)

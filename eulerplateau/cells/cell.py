@@ -131,11 +131,18 @@ class Cell:
         return (self.sites.points[:, None] + bent).reshape(-1, 2)
 
     def tangents(self, x: FloatArray) -> FloatArray:
-        """Return the unit tangents (N, 2) at the adhesions, half-way between two edges."""
-        edges = edges_of(x).tangents
-        both = edges[self.vertices] + edges[self.vertices - 1]
-        tangents: FloatArray = both / np.hypot(both[:, 0], both[:, 1])[:, None]
-        return tangents
+        """Return the unit tangents (N, 2) of the edge at the adhesions.
+
+        Edges have the direction of the curve at their middles, and sides have edges of
+        different lengths: of the turning at a vertex the part l_{v-1} / (l_{v-1} + l_v)
+        is behind it.
+        """
+        edges = edges_of(x)
+        here, before = self.vertices, self.vertices - 1
+        behind = edges.lengths[before] / (edges.lengths[before] + edges.lengths[here])
+        angle = edges.turning[here] * behind
+        along, across = edges.tangents[before], edges.normals[before]
+        return np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
 
 
 def _no_free_motions(x: FloatArray) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
@@ -166,8 +166,23 @@ def _explored(
         inside = value > control.window[0]
         return explore_from(start, control, limits, both_ways=inside)
 
-    for visited in stepwise(explored):
-        yield CellPoint(**vars(visited))
+    yield from up_to_contact(CellPoint(**vars(point)) for point in stepwise(explored))
+
+
+def up_to_contact(points: Iterable[CellPoint]) -> Iterator[CellPoint]:
+    """Yield the points of each branch up to the first that meets itself, included.
+
+    A special point located beyond that, or a branch that leaves one, is no cell's.
+    """
+    seen: set[int] = set()
+    ended: set[int] = set()
+    for point in points:
+        if touches(point.point.x):
+            if point.special is not None or point.branch not in seen - ended:
+                continue
+            ended.add(point.branch)
+        seen.add(point.branch)
+        yield point
 
 
 def _value_of(found: CellEquilibrium, family: CellFamily) -> float:

@@ -68,7 +68,7 @@ class EqualEdges:
                 excess = self._excess(edges)
                 previous = error
                 error = float(np.abs(excess).max() / edges.lengths.max())
-                # Quadratic convergence ends where rounding begins: then error stops falling.
+                # Quadratic convergence ends where rounding begins: error stops falling.
                 if error < 1e-15 or (error < _SMALL and error >= 0.25 * previous):
                     return x
                 if self._shift(edges) > _FAR:

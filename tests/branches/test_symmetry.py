@@ -98,3 +98,19 @@ def test_distance_ignores_rigid_motions_but_not_mirrors() -> None:
     assert loop_distance(ellipse(), 1.1 * ellipse()) == pytest.approx(
         0.1 * np.sqrt(np.mean(np.sum(ellipse() ** 2, axis=1)))
     )
+
+
+def test_a_loop_in_the_plane_is_flat_in_space() -> None:
+    x = ellipse()[:, :2]
+    for name in ("stretch", "shear"):
+        mode, keeps = modes()[name]
+        assert set(mode_symmetry(x, mode[:, :2]).keeps) == keeps
+        assert mode_symmetry(x, mode[:, :2]).transverse == 0
+
+
+def test_loops_in_the_plane_are_compared_up_to_a_rotation_but_no_mirror() -> None:
+    rng = np.random.default_rng(2)
+    x = ellipse()[:, :2] * (1 + 0.2 * rng.uniform(-1, 1, (N, 1)))
+    turn = np.array([[0.6, 0.8], [-0.8, 0.6]])
+    assert loop_distance(x, x @ turn + [1.0, 2.0]) < 1e-12
+    assert loop_distance(x, x * [1.0, -1.0]) > 1e-3

@@ -33,7 +33,9 @@ def projected(x: FloatArray) -> FloatArray:
 def test_jacobian_force_and_stiffness_are_derivatives() -> None:
     x = uneven(N, 8)
     rows = EQUAL.jacobian(x)
-    np.testing.assert_allclose(EQUAL.force(x, TENSIONS).ravel(), TENSIONS @ rows, atol=1e-14)
+    np.testing.assert_allclose(
+        EQUAL.force(x, TENSIONS).ravel(), TENSIONS @ rows, atol=1e-14
+    )
     stiffness = EQUAL.stiffness(x, TENSIONS)
     np.testing.assert_allclose(stiffness, stiffness.T, atol=1e-14)
     sizes = [1e-2, 5e-3, 2.5e-3]

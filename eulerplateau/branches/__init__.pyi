@@ -18,6 +18,7 @@ from .point import (
     BranchPoint as BranchPoint,
     StepControl as StepControl,
     first_point as first_point,
+    point_near as point_near,
 )
 from .scaling import PowerLaw as PowerLaw, fit_power as fit_power
 from .special import (

@@ -7,16 +7,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
 
-import numpy as np
-
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
 from eulerplateau.branches.point import (
     BranchPoint,
-    Direction,
     StepControl,
-    correct,
     first_point,
+    point_near,
 )
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FilmOfLoop
@@ -127,10 +124,8 @@ def equilibrium_near(problem: Problem, shape: Shape, load: float) -> Equilibrium
     Raises SpecError where Newton's method comes to none.
     """
     family, x_loop = _near(problem, shape)
-    control = StepControl(window=(load, load), unit=max(load, 1.0))
-    at_this_load = Direction(np.zeros_like(x_loop), control.unit)
     with one_thread():
-        found = correct(family, x_loop, load, at_this_load, control)
+        found = point_near(family, x_loop, load)
         if found is None:
             raise SpecError("start", f"no equilibrium is next to it at the load {load:g}")
         return equilibrium(found)

@@ -109,6 +109,13 @@ def first_point(
     return BranchPoint(family, model, value, direction, 0.0, 0)
 
 
+def point_near(family: Family, x: FloatArray, value: float) -> BranchPoint | None:
+    """Return the equilibrium at a value next to a loop x (n, d), stable or not; or None."""
+    control = StepControl(window=(value, value), unit=max(value, 1.0))
+    at_this_value = Direction(np.zeros_like(x), control.unit)
+    return correct(family, x, value, at_this_value, control)
+
+
 def along(point: BranchPoint, other: BranchPoint, control: StepControl) -> float:
     """Return how far `other` lies from `point` along the branch's direction there."""
     way = Direction(other.x - point.x, other.value - point.value)

@@ -8,6 +8,7 @@ from .equilibrium import CellEquilibrium as CellEquilibrium
 from .family import (
     CellFamily as CellFamily,
     CellPoint as CellPoint,
+    cell_near as cell_near,
     explore_cell as explore_cell,
 )
 from .regular import (

@@ -15,6 +15,7 @@ from eulerplateau.branches import (
     StepControl,
     explore_from,
     first_point,
+    point_near,
 )
 from eulerplateau.cells.cell import Cell, shortest_edge
 from eulerplateau.cells.equilibrium import CellEquilibrium, measured, status_of
@@ -22,7 +23,7 @@ from eulerplateau.cells.solving import solve_cell
 from eulerplateau.cells.touching import touches
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers import Status, stepwise
+from eulerplateau.solvers import Status, one_thread, stepwise
 
 PARAMETERS = "load", "stiffness"
 
@@ -107,6 +108,21 @@ def cell_equilibrium(point: BranchPoint) -> CellEquilibrium:
         stability=point.stability,
         status=status_of(family.cell, point.model, point.stability, Status.CONVERGED),
     )
+
+
+def cell_near(
+    cell: Cell, x: FloatArray, sigma_hat: float, ks_hat: float
+) -> CellEquilibrium:
+    """Return the equilibrium next to a loop x (n, 2), stable or not.
+
+    Raises SpecError where Newton's method comes to none.
+    """
+    family = CellFamily(cell, "load", ks_hat, shortest_edge(x))
+    with one_thread():
+        found = point_near(family, x, sigma_hat)
+        if found is None:
+            raise SpecError("start", f"no equilibrium is next to it at {sigma_hat:g}")
+        return cell_equilibrium(found)
 
 
 def explore_cell(

@@ -115,8 +115,8 @@ def scattered(n: int, vertices: IntArray, blocks: FloatArray) -> FloatArray:
     """
     places = (2 * vertices[:, :, None] + np.arange(2)).reshape(len(vertices), -1)
     entries = 2 * n * places[:, :, None] + places[:, None, :]
-    total: FloatArray = np.bincount(entries.ravel(), blocks.ravel(), 4 * n * n)
-    return total.reshape(2 * n, 2 * n)
+    total = np.bincount(entries.ravel(), blocks.ravel(), 4 * n * n)
+    return total.astype(np.float64, copy=False).reshape(2 * n, 2 * n)
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

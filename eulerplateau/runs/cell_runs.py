@@ -10,13 +10,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import SpecialPoint
 from eulerplateau.cells import CellEquilibrium, explore_cell, solve_cell, sweep_cell
+from eulerplateau.loop import edges_of
 from eulerplateau.mesh import write_whole
 from eulerplateau.runs.cell_shapes import write_cell_shape
 from eulerplateau.runs.cell_spec import CellRunSpec
-from eulerplateau.runs.cell_table import CellBranchRow, CellRow, cell_columns
+from eulerplateau.runs.cell_table import CellBranchRow, CellRow
 from eulerplateau.runs.recording import OpenRun, not_converged, opened
 
 SPECIAL_COLUMNS = (
@@ -126,12 +129,42 @@ def _record(
     row = row_type(
         step=len(run.rows),
         quantity=spec.sweep.parameter,
-        **cell_columns(found),
+        **_columns(found),
         **columns,
     )
     run.folder.add(row, lambda path: write_cell_shape(path, found, row, modes))
     run.rows.append(row)
     return row
+
+
+def _columns(found: CellEquilibrium) -> dict[str, Any]:
+    """Return all columns of a cell but its step."""
+    stability = found.stability
+    return {
+        "sigma_hat": found.sigma_hat,
+        "ks_hat": found.ks_hat,
+        "beta_hat": found.beta_hat,
+        "energy": found.energy,
+        "bending_energy": found.bending_energy,
+        "film_energy": found.film_energy,
+        "adhesion_energy": found.adhesion_energy,
+        "line_energy": found.line_energy,
+        "perimeter": found.perimeter,
+        "area": found.area,
+        "kappa_adhesion": float(found.kappa_adhesion.mean()),
+        "kappa_mid": float(found.kappa_mid.min()),
+        "extension": float(found.extensions.mean()),
+        "traction": float(found.traction.mean()),
+        "largest_traction": float(found.traction.max()),
+        "tangential": float(np.abs(found.tangential).max()),
+        "n_unstable": found.n_unstable,
+        "lowest_eigenvalue": None if stability is None else stability.lowest,
+        "residual": found.residual,
+        "iterations": found.iterations,
+        "seconds": found.seconds,
+        "status": found.status,
+        "max_turning": float(np.degrees(np.abs(edges_of(found.x).turning).max())),
+    }
 
 
 def _special(row: CellBranchRow, special: SpecialPoint) -> dict[str, Any]:

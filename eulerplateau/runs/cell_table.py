@@ -3,12 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
-import numpy as np
-
-from eulerplateau.cells import CellEquilibrium
-from eulerplateau.loop import edges_of
 from eulerplateau.solvers import Status
 
 
@@ -94,33 +89,3 @@ class CellBranchRow(CellRow):
     origin: int | None
     special: int | None
     arclength: float
-
-
-def cell_columns(found: CellEquilibrium) -> dict[str, Any]:
-    """Return all columns of a cell but its step."""
-    stability = found.stability
-    return {
-        "sigma_hat": found.sigma_hat,
-        "ks_hat": found.ks_hat,
-        "beta_hat": found.beta_hat,
-        "energy": found.energy,
-        "bending_energy": found.bending_energy,
-        "film_energy": found.film_energy,
-        "adhesion_energy": found.adhesion_energy,
-        "line_energy": found.line_energy,
-        "perimeter": found.perimeter,
-        "area": found.area,
-        "kappa_adhesion": float(found.kappa_adhesion.mean()),
-        "kappa_mid": float(found.kappa_mid.min()),
-        "extension": float(found.extensions.mean()),
-        "traction": float(found.traction.mean()),
-        "largest_traction": float(found.traction.max()),
-        "tangential": float(np.abs(found.tangential).max()),
-        "n_unstable": found.n_unstable,
-        "lowest_eigenvalue": None if stability is None else stability.lowest,
-        "residual": found.residual,
-        "iterations": found.iterations,
-        "seconds": found.seconds,
-        "status": found.status,
-        "max_turning": float(np.degrees(np.abs(edges_of(found.x).turning).max())),
-    }

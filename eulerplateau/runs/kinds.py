@@ -30,16 +30,6 @@ class Kind:
     notes: Callable[[Mapping[str, Any]], tuple[str, ...]]
 
 
-def kind_of(about: Mapping[str, Any]) -> Kind:
-    """Return the kind of run a run.json belongs to: a film's, unless it says otherwise."""
-    if about.get("kind") == "cell":
-        # Loaded for cells only.
-        from eulerplateau.runs.cell_kind import CELL
-
-        return CELL
-    return _FILM
-
-
 def _load(about: Mapping[str, Any]) -> LoadName:
     """Return the load of the film that run.json names.
 
@@ -60,4 +50,4 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
         return "", "", ""
 
 
-_FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes)
+FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes)

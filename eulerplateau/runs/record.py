@@ -13,7 +13,7 @@ from typing import Any
 from eulerplateau.errors import MissingLibraryError, OutputError
 from eulerplateau.film import SPRING_LOAD
 from eulerplateau.runs.folder import shape_name
-from eulerplateau.runs.kinds import Kind, kind_of
+from eulerplateau.runs.kinds import FILM, Kind
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
 from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
 from eulerplateau.runs.states import between_planar, distinct_steps, stable_states
@@ -65,7 +65,7 @@ class Run:
     @property
     def kind(self) -> Kind:
         """What it follows, a film or a cell."""
-        return kind_of(self.about)
+        return _kind_of(self.about)
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
@@ -163,7 +163,7 @@ def read_runs(folders: Sequence[Path]) -> list[Run]:
 
 def _read(folder: Path) -> Run:
     about = _about(folder)
-    kind = kind_of(about)
+    kind = _kind_of(about)
     column = kind.load(about).column
     rows: Sequence[Record]
     special: dict[int, dict[str, str]] = {}
@@ -195,6 +195,16 @@ def _about(folder: Path) -> Mapping[str, Any]:
     except (OSError, ValueError):
         return {}
     return about if isinstance(about, dict) else {}
+
+
+def _kind_of(about: Mapping[str, Any]) -> Kind:
+    """Return the kind of run a run.json belongs to: a film's, unless it says otherwise."""
+    if about.get("kind") == "cell":
+        # Loaded for cells only.
+        from eulerplateau.runs.cell_kind import CELL
+
+        return CELL
+    return FILM
 
 
 def _special(path: Path) -> dict[int, dict[str, str]]:

@@ -3,15 +3,13 @@
 import numpy as np
 import pytest
 
-from eulerplateau.branches.point import Direction, StepControl, correct
 from eulerplateau.cells import (
     Cell,
-    CellFamily,
+    cell_near,
     regular_sites,
     solve_cell,
     symmetric_index,
 )
-from eulerplateau.cells.family import cell_equilibrium
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell import (
     fold_stiffness,
@@ -93,22 +91,15 @@ def test_whole_index_is_that_of_the_polygon(args):
     exact = regular_cell(n, sigma, stiffness)
     cell = Cell(regular_sites(n), 64)
     # The discrete equilibrium next to the exact one, stable or not.
-    found = _equilibrium_near(cell, exact.outline(64), sigma, stiffness)
+    found = cell_near(cell, _turned(exact.outline(64), n), sigma, stiffness)
     assert found.n_unstable == exact.n_unstable
     assert symmetric_index(found) == exact.symmetric_index == 0
 
 
-def _equilibrium_near(cell, x, sigma, stiffness):
-    """Return the polygon's equilibrium next to a shape, by Newton's method."""
-    turn = np.exp(2j * np.pi * (0.5 / len(cell.sites.points) + 0.25))
-    turned = (x[:, 0] + 1j * x[:, 1]) * turn
-    x = np.stack([turned.real, turned.imag], axis=-1)
-    family = CellFamily(cell, "load", stiffness)
-    control = StepControl(window=(sigma, sigma), unit=sigma)
-    level = Direction(np.zeros_like(x), sigma)
-    point = correct(family, x, sigma, level, control)
-    assert point is not None
-    return cell_equilibrium(point)
+def _turned(x, n):
+    """Return an exact outline with its first adhesion at (1, 0), as a polygon has it."""
+    turned = (x[:, 0] + 1j * x[:, 1]) * np.exp(2j * np.pi * (0.5 / n + 0.25))
+    return np.stack([turned.real, turned.imag], axis=-1)
 
 
 def test_cells_with_two_adhesions_stay_symmetric_and_others_do_not():

@@ -2,5 +2,9 @@ from .area_fit import draw_area_fit as draw_area_fit
 from .branch_diagram import draw_branches as draw_branches
 from .comparison import draw_comparison as draw_comparison
 from .onset import fit_onset as fit_onset
+from .phase_diagram import (
+    PHASE_DIAGRAM as PHASE_DIAGRAM,
+    draw_phase_diagram as draw_phase_diagram,
+)
 from .planar import ENERGY as ENERGY, GALLERY as GALLERY, draw_figures as draw_figures
 from .sweep_diagram import draw_diagram as draw_diagram

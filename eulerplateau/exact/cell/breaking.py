@@ -16,7 +16,7 @@ from eulerplateau.exact.cell.transitions import Stretch, Transition, stable_stre
 from eulerplateau.exact.checks import finite, whole_number
 
 # Shapes along the curve between which a wave is looked for that becomes unstable.
-_BRACKETS = 12
+_BRACKETS = 6
 
 
 @dataclass(frozen=True)

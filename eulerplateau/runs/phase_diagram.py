@@ -1,0 +1,223 @@
+"""The phase diagram of a regular cell: lines of located points, a shape in each region."""
+
+from __future__ import annotations
+
+import csv
+import io
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.cells import CellEquilibrium, solve_cell
+from eulerplateau.errors import SpecError
+from eulerplateau.exact.cell import (
+    Transition,
+    fold_line,
+    inflection_onset,
+    inflection_stiffness,
+    reconnection,
+    star,
+    symmetry_breaking,
+)
+from eulerplateau.mesh import write_whole
+from eulerplateau.runs.cell_runs import describe, record_cell
+from eulerplateau.runs.cell_spec import CellRunSpec
+from eulerplateau.runs.cell_table import CellRow
+from eulerplateau.runs.recording import opened
+
+# Contractilities at which the lines are located, and points of the fold.
+_COLUMNS, _FOLD_POINTS = 40, 160
+# The grid on which the middle of a region is found.
+_GRID = 48
+LINE_COLUMNS = (
+    "line", "sigma_hat", "ks_hat", "wave", "kappa_mid", "extension", "perimeter", "energy"
+)  # fmt: skip
+REGIONS = ("convex", "inflected", "unlike sides", "collapsed")
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the diagram, by points located one by one.
+
+    Attributes
+    ----------
+    name : "inflection", "symmetry" (where it is lost) or "fold"
+    sigma_hat, ks_hat : (n,) float
+    """
+
+    name: str
+    sigma_hat: FloatArray
+    ks_hat: FloatArray
+
+    def at(self, sigma_hat: FloatArray) -> FloatArray:
+        """Return its stiffness between its points; infinite where it does not reach."""
+        if not len(self.sigma_hat):
+            return np.full_like(sigma_hat, np.inf)
+        x, y = np.log(self.sigma_hat), np.log(self.ks_hat)
+        inside = np.interp(np.log(sigma_hat), x, y, left=np.inf, right=np.inf)
+        return np.exp(inside)
+
+
+@dataclass(frozen=True)
+class PhaseDiagram:
+    """A phase diagram, computed.
+
+    Attributes
+    ----------
+    folder : Path
+    sigma_hat, ks_hat : (low, high), the window
+    lines : Line, by name
+    points : (sigma_hat, ks_hat), of the special points by name
+    sigma_p : float or None, from which on there are stars
+    shapes : by the region, the cell that is solved for in its middle
+    """
+
+    folder: Path
+    sigma_hat: tuple[float, float]
+    ks_hat: tuple[float, float]
+    lines: dict[str, Line]
+    points: dict[str, tuple[float, float]]
+    sigma_p: float | None
+    shapes: dict[str, CellEquilibrium]
+    seconds: float
+
+    def regions(self, sigma_hat: FloatArray, ks_hat: FloatArray) -> Any:
+        """Return the region, by its place in REGIONS, of points of the plane."""
+        limits = [self.lines[name].at(sigma_hat) for name in ("inflection", "symmetry")]
+        fold = self.lines["fold"].at(sigma_hat)
+        region = np.where(ks_hat > limits[0], 1, 0)
+        region = np.where(ks_hat > np.minimum(limits[1], fold), 2, region)
+        return np.where(ks_hat > fold, 3, region)
+
+
+def run_phase_diagram(
+    spec: CellRunSpec, path: Path, on_point: Callable[[str], None] = lambda line: None
+) -> PhaseDiagram:
+    """Compute a phase diagram into the folder `path`, calling `on_point` for each point.
+
+    It writes lines.csv, points.csv, and a row of sweep.csv with its shape for each region.
+    Raises SpecError for a cell that is not regular or has line tension.
+    """
+    started = time.perf_counter()
+    n = _regular(spec)
+    window = spec.phase_diagram
+    loads = _loads(window.sigma_hat)
+    located = {
+        "inflection": [_counted(on_point, inflection_stiffness(n, s)) for s in loads],
+        "symmetry": [_counted(on_point, symmetry_breaking(n, s)) for s in loads],
+        "fold": [_counted(on_point, point) for point in fold_line(n, _FOLD_POINTS)],
+    }
+    points = {name: [p for p in found if p] for name, found in located.items()}
+    lines = {name: _line(name, found) for name, found in points.items()}
+    special = _special(n)
+    with opened(path, "sweep", CellRow, describe(spec), started) as run:
+        write_whole(path / "lines.csv", _table(points))
+        write_whole(path / "points.csv", _special_table(n, special))
+        diagram = PhaseDiagram(
+            path, window.sigma_hat, window.ks_hat, lines, special, _sigma_p(n), {}, 0.0
+        )
+        for region, (sigma, ks) in _middles(diagram).items():
+            found = solve_cell(spec.cell.made(), sigma, ks)
+            record_cell(run, CellRow, "sigma_hat", found)
+            diagram.shapes[region] = found
+        run.totals["regions"] = list(diagram.shapes)
+        return PhaseDiagram(**{**vars(diagram), "seconds": run.seconds})
+
+
+def _regular(spec: CellRunSpec) -> int:
+    if spec.cell.adhesions is None:
+        raise SpecError("cell.adhesions", "should be given: diagrams are of regular cells")
+    if spec.cell.beta_hat:
+        raise SpecError("cell.beta_hat", "should be 0: lines are known without tension")
+    return spec.cell.adhesions
+
+
+def _loads(window: tuple[float, float]) -> list[float]:
+    """Return contractilities from 1 on, below which cells do not pull."""
+    low, high = max(window[0], 1.0 + 1e-9), max(window[1], 1.1)
+    return [float(load) for load in np.geomspace(low, high, _COLUMNS)]
+
+
+def _counted(
+    on_point: Callable[[str], None], point: Transition | None
+) -> Transition | None:
+    on_point("" if point is None else f"{point.sigma_hat:.4g}, {point.ks_hat:.4g}")
+    return point
+
+
+def _line(name: str, points: Sequence[Transition]) -> Line:
+    ordered = sorted(points, key=lambda point: point.sigma_hat)
+    return Line(
+        name,
+        np.array([point.sigma_hat for point in ordered]),
+        np.array([point.ks_hat for point in ordered]),
+    )
+
+
+def _special(n: int) -> dict[str, tuple[float, float]]:
+    inflected, folded = inflection_onset(n), reconnection(n)
+    return {
+        "softest inflected": (inflected.sigma_hat, inflected.ks_hat),
+        "softest fold": (folded.sigma_hat, folded.ks_hat),
+    }
+
+
+def _sigma_p(n: int) -> float | None:
+    return star(n).sigma_p if n > 2 else None
+
+
+def _middles(diagram: PhaseDiagram) -> dict[str, tuple[float, float]]:
+    """Return the point of each region that is farthest from all others."""
+    sigma = np.geomspace(*diagram.sigma_hat, _GRID)
+    ks = np.geomspace(*diagram.ks_hat, _GRID)
+    region = diagram.regions(*np.meshgrid(sigma, ks, indexing="ij"))
+    middles = {}
+    for number, name in enumerate(REGIONS):
+        inside = np.pad(region == number, 1)
+        if inside.any():
+            depth = distance_transform_edt(inside)[1:-1, 1:-1]
+            i, j = np.unravel_index(int(depth.argmax()), depth.shape)
+            middles[name] = float(sigma[i]), float(ks[j])
+    return middles
+
+
+def _table(points: dict[str, list[Transition]]) -> bytes:
+    rows = [
+        {
+            "line": name,
+            "sigma_hat": point.sigma_hat,
+            "ks_hat": point.ks_hat,
+            "wave": getattr(point, "q", ""),
+            "kappa_mid": point.cell.kappa_mid,
+            "extension": point.cell.extension,
+            "perimeter": point.cell.perimeter,
+            "energy": point.cell.energy,
+        }
+        for name, found in points.items()
+        for point in found
+    ]
+    return _csv(LINE_COLUMNS, rows)
+
+
+def _special_table(n: int, special: dict[str, tuple[float, float]]) -> bytes:
+    rows: list[dict[str, Any]] = [
+        {"point": name, "sigma_hat": sigma, "ks_hat": ks}
+        for name, (sigma, ks) in special.items()
+    ]
+    if n > 2:
+        rows.append({"point": "star without protrusion", "sigma_hat": _sigma_p(n)})
+    return _csv(("point", "sigma_hat", "ks_hat"), rows)
+
+
+def _csv(columns: Sequence[str], rows: Sequence[dict[str, Any]]) -> bytes:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, columns, lineterminator="\n", restval="")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue().encode()

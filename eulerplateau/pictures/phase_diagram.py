@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eulerplateau.arrays import FloatArray
 from eulerplateau.pictures.figure import (
     BLACK,
     BLUE,
@@ -28,7 +30,7 @@ _COLOURS = ("#E8F1F8", "#C9DFEF", "#FBE7CF", "#F3CDB9")
 _NAMES = {
     "convex": "convex",
     "inflected": "inflected",
-    "unlike sides": "unlike sides, or none:\nthe regular cell is unstable",
+    "unlike sides": "the regular cell is unstable",
     "collapsed": "no smooth regular cell",
 }
 _LINES: dict[str, dict[str, Any]] = {
@@ -37,12 +39,17 @@ _LINES: dict[str, dict[str, Any]] = {
         "linestyle": (0, (5, 2)),
         "label": r"$\sigma_1^*$: sides straight in the middle",
     },
-    "symmetry": {"color": ORANGE, "label": "symmetry is lost"},
+    "symmetry lost": {"color": ORANGE, "label": "symmetry is lost"},
+    "symmetry regained": {"color": ORANGE},
     "fold": {"color": VERMILION, "label": "fold of the regular cell"},
 }
 _RESOLUTION = 400
 # Half the side of a shape's box, as a part of the axes, and what a cell has room for in it.
-_BOX, _ROOM = 0.085, 1.15
+_BOX, _ROOM = 0.075, 1.15
+# The shape of a thin region is drawn beside it, at the end of a line.
+_MOVES = np.array([[0, 0], [0, -0.24], [0.22, -0.16], [0, 0.24], [-0.24, 0], [0.24, 0]])
+_APART, _THICK = 0.17, 0.05
+_LEADER: dict[str, Any] = {"color": BLACK, "linewidth": 0.7, "zorder": 3}
 
 
 def draw_phase_diagram(diagram: PhaseDiagram) -> bool:
@@ -67,8 +74,17 @@ def phase_figure(diagram: PhaseDiagram) -> Any:
     ax.set_xlabel(r"$\hat\sigma=\sigma R_0^3/\alpha$")
     ax.set_ylabel(r"$\hat k_s=k_sR_0^3/\alpha$")
     ax.tick_params(direction="in", which="both", top=True, right=True)
-    for region, cell in diagram.shapes.items():
-        _draw_cell(ax, cell, region)
+    names: list[str] = []
+    taken: list[FloatArray] = []
+    for region in sorted(diagram.shapes, key=lambda region: -diagram.room[region]):
+        number, cell = REGIONS.index(region) + 1, diagram.shapes[region]
+        taken.append(_centre(diagram, cell, diagram.room[region], taken))
+        _draw_cell(ax, cell, number, taken[-1])
+        ending = "" if cell.converged else f"; the polygon ends {cell.status.value}"
+        names.append(f"{number}  {_NAMES[region]}{ending}")
+    ax.text(
+        0.98, 0.03, "\n".join(sorted(names)), transform=ax.transAxes, ha="right", fontsize=8
+    )
     figure.legend(loc="outside upper center", ncols=2, frameon=False, fontsize=9)
     return figure
 
@@ -91,21 +107,43 @@ def _fill(ax: Axes, diagram: PhaseDiagram) -> None:
     )
 
 
-def _draw_cell(ax: Axes, cell: CellEquilibrium, region: str) -> None:
-    """Draw a cell where it was solved for, with its adhesions and its region's name."""
-    place = ax.transData.transform((cell.sigma_hat, cell.ks_hat))
-    x, y = ax.transAxes.inverted().transform(place)
-    x, y = np.clip([x, y], _BOX + 0.01, 1 - _BOX - 0.01)
-    inset = ax.inset_axes((x - _BOX, y - _BOX, 2 * _BOX, 2 * _BOX))
+def _centre(
+    diagram: PhaseDiagram,
+    cell: CellEquilibrium,
+    room: float,
+    taken: Sequence[FloatArray],
+) -> FloatArray:
+    """Return where in the axes (2,) a cell is drawn: at its place, if there is room."""
+    place = _in_axes(diagram, np.array([cell.sigma_hat, cell.ks_hat]))
+    for move in _MOVES[0 if room > _THICK else 1 :]:
+        centre: FloatArray = np.clip(place + move, _BOX + 0.02, 1 - _BOX - 0.05)
+        if all(np.hypot(*(centre - other)) > _APART for other in taken):
+            return centre
+    return np.clip(place, _BOX + 0.02, 1 - _BOX - 0.05)
+
+
+def _in_axes(diagram: PhaseDiagram, point: FloatArray) -> FloatArray:
+    """Return where in the axes, from 0 to 1, a point (2,) of the plane is."""
+    low, high = np.log(np.array([diagram.sigma_hat, diagram.ks_hat])).T
+    place: FloatArray = (np.log(point) - low) / (high - low)
+    return place
+
+
+def _draw_cell(ax: Axes, cell: CellEquilibrium, number: int, centre: FloatArray) -> None:
+    """Draw a cell with its adhesions and a number, and a line to where it belongs."""
+    place = ax.transAxes.inverted().transform(
+        ax.transData.transform((cell.sigma_hat, cell.ks_hat))
+    )
+    if np.hypot(*(place - centre)) > _BOX:
+        ax.plot(*zip(place, centre, strict=True), transform=ax.transAxes, **_LEADER)
+    inset = ax.inset_axes((*(centre - _BOX), 2 * _BOX, 2 * _BOX))
     outline = np.vstack([cell.x, cell.x[:1]])
-    inset.fill(*outline.T, color="white", alpha=0.8, linewidth=0)
+    inset.fill(*outline.T, color="white", alpha=0.9, linewidth=0)
     inset.plot(*outline.T, color=BLACK, linewidth=1.2)
-    inset.plot(*cell.cell.sites.points.T, "o", color=VERMILION, markersize=2.5)
-    for vertex, rest in zip(
-        cell.x[cell.cell.vertices], cell.cell.sites.points, strict=True
-    ):
-        inset.plot(*np.stack([vertex, rest]).T, color=VERMILION, linewidth=0.8)
+    rests = cell.cell.sites.points
+    inset.plot(*rests.T, "o", color=VERMILION, markersize=2.5)
+    for pair in zip(cell.x[cell.cell.vertices], rests, strict=True):
+        inset.plot(*np.stack(pair).T, color=VERMILION, linewidth=0.8)
     inset.set(xlim=(-_ROOM, _ROOM), ylim=(-_ROOM, _ROOM), aspect="equal")
     inset.set_axis_off()
-    note = "" if cell.converged else f"\n({cell.status.value})"
-    inset.set_title(f"{_NAMES[region]}{note}", fontsize=8, pad=1)
+    inset.set_title(str(number), fontsize=9, fontweight="bold", pad=0)

@@ -7,6 +7,7 @@ import io
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +18,13 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.cells import CellEquilibrium, solve_cell
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell import (
+    SymmetryBreaking,
     Transition,
     fold_line,
     inflection_onset,
     inflection_stiffness,
     reconnection,
+    rigid_fold,
     star,
     symmetry_breaking,
 )
@@ -32,7 +35,7 @@ from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.recording import opened
 
 # Contractilities at which the lines are located, and points of the fold.
-_COLUMNS, _FOLD_POINTS = 40, 160
+_COLUMNS, _FOLD_POINTS, _HALVINGS = 40, 160, 7
 # The grid on which the middle of a region is found.
 _GRID = 48
 LINE_COLUMNS = (
@@ -47,7 +50,7 @@ class Line:
 
     Attributes
     ----------
-    name : "inflection", "symmetry" (where it is lost) or "fold"
+    name : "inflection", "symmetry lost", "symmetry regained" or "fold"
     sigma_hat, ks_hat : (n,) float
     """
 
@@ -76,6 +79,7 @@ class PhaseDiagram:
     points : (sigma_hat, ks_hat), of the special points by name
     sigma_p : float or None, from which on there are stars
     shapes : by the region, the cell that is solved for in its middle
+    room : by the region, how far its middle is from its border, as a part of the axes
     """
 
     folder: Path
@@ -85,15 +89,15 @@ class PhaseDiagram:
     points: dict[str, tuple[float, float]]
     sigma_p: float | None
     shapes: dict[str, CellEquilibrium]
+    room: dict[str, float]
     seconds: float
 
     def regions(self, sigma_hat: FloatArray, ks_hat: FloatArray) -> Any:
         """Return the region, by its place in REGIONS, of points of the plane."""
-        limits = [self.lines[name].at(sigma_hat) for name in ("inflection", "symmetry")]
-        fold = self.lines["fold"].at(sigma_hat)
-        region = np.where(ks_hat > limits[0], 1, 0)
-        region = np.where(ks_hat > np.minimum(limits[1], fold), 2, region)
-        return np.where(ks_hat > fold, 3, region)
+        at = {name: line.at(sigma_hat) for name, line in self.lines.items()}
+        region = np.where(ks_hat > at["inflection"], 1, 0)
+        unlike = (ks_hat > at["symmetry lost"]) & (ks_hat < at["symmetry regained"])
+        return np.where(ks_hat > at["fold"], 3, np.where(unlike, 2, region))
 
 
 def run_phase_diagram(
@@ -107,10 +111,14 @@ def run_phase_diagram(
     started = time.perf_counter()
     n = _regular(spec)
     window = spec.phase_diagram
-    loads = _loads(window.sigma_hat)
+    high = window.sigma_hat[1]
+    flat, folded = inflection_onset(n), rigid_fold(n)
+    # Its shape is that of the softest inflected cell, at radius 2/3: rigid, it is at 1.
+    straight = _from((2 / 3) ** 3 * flat.sigma_hat, high)
+    unlike = sorted({*_from(1.0, high), *_from(folded.sigma_hat, high)[: _COLUMNS // 2]})
     located = {
-        "inflection": [_counted(on_point, inflection_stiffness(n, s)) for s in loads],
-        "symmetry": [_counted(on_point, symmetry_breaking(n, s)) for s in loads],
+        "inflection": [_counted(on_point, inflection_stiffness(n, s)) for s in straight],
+        **_unlike(n, unlike, on_point),
         "fold": [_counted(on_point, point) for point in fold_line(n, _FOLD_POINTS)],
     }
     points = {name: [p for p in found if p] for name, found in located.items()}
@@ -120,12 +128,12 @@ def run_phase_diagram(
         write_whole(path / "lines.csv", _table(points))
         write_whole(path / "points.csv", _special_table(n, special))
         diagram = PhaseDiagram(
-            path, window.sigma_hat, window.ks_hat, lines, special, _sigma_p(n), {}, 0.0
+            path, window.sigma_hat, window.ks_hat, lines, special, _sigma_p(n), {}, {}, 0.0
         )
-        for region, (sigma, ks) in _middles(diagram).items():
+        for region, (sigma, ks, room) in _middles(diagram).items():
             found = solve_cell(spec.cell.made(), sigma, ks)
             record_cell(run, CellRow, "sigma_hat", found)
-            diagram.shapes[region] = found
+            diagram.shapes[region], diagram.room[region] = found, room
         run.totals["regions"] = list(diagram.shapes)
         return PhaseDiagram(**{**vars(diagram), "seconds": run.seconds})
 
@@ -138,10 +146,39 @@ def _regular(spec: CellRunSpec) -> int:
     return spec.cell.adhesions
 
 
-def _loads(window: tuple[float, float]) -> list[float]:
-    """Return contractilities from 1 on, below which cells do not pull."""
-    low, high = max(window[0], 1.0 + 1e-9), max(window[1], 1.1)
-    return [float(load) for load in np.geomspace(low, high, _COLUMNS)]
+def _from(low: float, high: float) -> list[float]:
+    """Return contractilities above a lower limit: some next to it, the others beyond."""
+    near = low * (1 + np.geomspace(1e-3, 0.3, _COLUMNS // 2))
+    far = np.geomspace(1.3 * low, max(high, 1.4 * low), _COLUMNS)
+    return [float(load) for load in (*near, *far[1:])]
+
+
+def _unlike(
+    n: int, loads: list[float], on_point: Callable[[str], None]
+) -> dict[str, list[Transition | None]]:
+    """Return where symmetry is lost, and where all waves are stable again."""
+    found = {}
+
+    def locate(load: float) -> bool:
+        found[load] = symmetry_breaking(n, load)
+        _counted(on_point, found[load][0] if found[load] else None)
+        return bool(found[load])
+
+    known = [locate(load) for load in loads]
+    for (low, high), (before, after) in zip(pairwise(loads), pairwise(known), strict=True):
+        # Where the line begins, as closely as halving tells.
+        for _ in range(_HALVINGS if before != after else 0):
+            middle = float(np.sqrt(low * high))
+            low, high = (low, middle) if locate(middle) == after else (middle, high)
+    lost = [points[0] if points else None for points in found.values()]
+    regained = [points[-1] if _again(points) else None for points in found.values()]
+    return {"symmetry lost": lost, "symmetry regained": regained}
+
+
+def _again(points: Sequence[SymmetryBreaking]) -> bool:
+    """Return whether waves have become unstable, and all of them stable again."""
+    last = {point.q: point for point in points}
+    return bool(points) and not any(point.lost for point in last.values())
 
 
 def _counted(
@@ -172,8 +209,8 @@ def _sigma_p(n: int) -> float | None:
     return star(n).sigma_p if n > 2 else None
 
 
-def _middles(diagram: PhaseDiagram) -> dict[str, tuple[float, float]]:
-    """Return the point of each region that is farthest from all others."""
+def _middles(diagram: PhaseDiagram) -> dict[str, tuple[float, float, float]]:
+    """Return the point of each region farthest from all others, and how far that is."""
     sigma = np.geomspace(*diagram.sigma_hat, _GRID)
     ks = np.geomspace(*diagram.ks_hat, _GRID)
     region = diagram.regions(*np.meshgrid(sigma, ks, indexing="ij"))
@@ -183,7 +220,8 @@ def _middles(diagram: PhaseDiagram) -> dict[str, tuple[float, float]]:
         if inside.any():
             depth = distance_transform_edt(inside)[1:-1, 1:-1]
             i, j = np.unravel_index(int(depth.argmax()), depth.shape)
-            middles[name] = float(sigma[i]), float(ks[j])
+            room = float(depth[i, j]) / _GRID
+            middles[name] = float(sigma[i]), float(ks[j]), room
     return middles
 
 

@@ -18,6 +18,7 @@ from eulerplateau.cli import commands
 from eulerplateau.mesh import MeshSpec
 from eulerplateau.runs import load_run
 from eulerplateau.settings import load_toml
+from tests.helpers.command import run_here
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -78,7 +79,7 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def run(*arguments: str) -> None:
     """Run the program as a user does; fails the test unless it exits with 0."""
-    subprocess.run([sys.executable, "-m", "eulerplateau", *arguments], check=True)
+    assert run_here(*arguments).returncode == 0
 
 
 @pytest.mark.parametrize(

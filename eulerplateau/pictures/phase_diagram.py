@@ -47,8 +47,8 @@ _RESOLUTION = 400
 # Half the side of a shape's box, as a part of the axes, and what a cell has room for in it.
 _BOX, _ROOM = 0.075, 1.15
 # The shape of a thin region is drawn beside it, at the end of a line.
-_MOVES = np.array([[0, 0], [0, -0.24], [0.22, -0.16], [0, 0.24], [-0.24, 0], [0.24, 0]])
-_APART, _THICK = 0.17, 0.05
+_MOVES = np.array([[0, 0], [-0.26, 0], [0, -0.26], [0.24, -0.2], [0, 0.24], [0.26, 0]])
+_APART, _THICK = 0.14, 0.05
 _LEADER: dict[str, Any] = {"color": BLACK, "linewidth": 0.7, "zorder": 3}
 
 
@@ -82,9 +82,8 @@ def phase_figure(diagram: PhaseDiagram) -> Any:
         _draw_cell(ax, cell, number, taken[-1])
         ending = "" if cell.converged else f"; the polygon ends {cell.status.value}"
         names.append(f"{number}  {_NAMES[region]}{ending}")
-    ax.text(
-        0.98, 0.03, "\n".join(sorted(names)), transform=ax.transAxes, ha="right", fontsize=8
-    )
+    listed = "\n".join(sorted(names))
+    ax.text(0.98, 0.03, listed, transform=ax.transAxes, ha="right", fontsize=8)
     figure.legend(loc="outside upper center", ncols=2, frameon=False, fontsize=9)
     return figure
 

@@ -170,9 +170,10 @@ def _unlike(
         for _ in range(_HALVINGS if before != after else 0):
             middle = float(np.sqrt(low * high))
             low, high = (low, middle) if locate(middle) == after else (middle, high)
-    lost = [points[0] if points else None for points in found.values()]
-    regained = [points[-1] if _again(points) else None for points in found.values()]
-    return {"symmetry lost": lost, "symmetry regained": regained}
+    return {
+        "symmetry lost": [points[0] if points else None for points in found.values()],
+        "symmetry regained": [p[-1] if _again(p) else None for p in found.values()],
+    }
 
 
 def _again(points: Sequence[SymmetryBreaking]) -> bool:

@@ -52,14 +52,14 @@ def run_cell_sweep(
     leaves a valid folder and says so in its run.json. Raises SpecError, OutputError.
     """
     started = time.perf_counter()
-    cell = spec.cell.made()
+    cell, pairs = spec.cell.made(), spec.pairs()
     with opened(path, "sweep", CellRow, describe(spec), started) as run:
         limit = spec.max_iterations
-        for found in sweep_cell(cell, spec.pairs(), max_iterations=limit):
+        for found in sweep_cell(cell, pairs, max_iterations=limit):
             on_row(record_cell(run, CellRow, spec.swept.parameter, found))
             run.totals |= {
                 "values": len(run.rows),
-                "of": len(spec.pairs()),
+                "of": len(pairs),
                 "not_converged": not_converged(run.rows),
             }
     return CellRun(path, tuple(run.rows), (), run.seconds)

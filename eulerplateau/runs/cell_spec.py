@@ -99,10 +99,13 @@ class PhaseDiagramSettings(Settings):
     Attributes
     ----------
     sigma_hat, ks_hat : (low, high), both above 0
+    columns : int
+        Lines are located at so many contractilities, and at as many where they begin.
     """
 
     sigma_hat: tuple[float, float] = (1.0, 1000.0)
     ks_hat: tuple[float, float] = (1.0, 1000.0)
+    columns: int = Field(default=40, ge=4)
 
     @model_validator(mode="after")
     def _ranges(self) -> PhaseDiagramSettings:

@@ -30,12 +30,13 @@ from eulerplateau.exact.cell import (
 )
 from eulerplateau.mesh import write_whole
 from eulerplateau.runs.cell_runs import describe, record_cell
-from eulerplateau.runs.cell_spec import CellRunSpec
+from eulerplateau.runs.cell_spec import CellRunSpec, PhaseDiagramSettings
 from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.recording import opened
+from eulerplateau.solvers import one_thread
 
-# Contractilities at which the lines are located, and points of the fold.
-_COLUMNS, _FOLD_POINTS, _HALVINGS = 40, 160, 7
+# Points of the fold, and how often a line's beginning is halved.
+_FOLD_POINTS, _HALVINGS = 160, 7
 # The grid on which the middle of a region is found.
 _GRID = 48
 LINE_COLUMNS = (
@@ -111,16 +112,8 @@ def run_phase_diagram(
     started = time.perf_counter()
     n = _regular(spec)
     window = spec.phase_diagram
-    high = window.sigma_hat[1]
-    flat, folded = inflection_onset(n), rigid_fold(n)
-    # Its shape is that of the softest inflected cell, at radius 2/3: rigid, it is at 1.
-    straight = _from((2 / 3) ** 3 * flat.sigma_hat, high)
-    unlike = sorted({*_from(1.0, high), *_from(folded.sigma_hat, high)[: _COLUMNS // 2]})
-    located = {
-        "inflection": [_counted(on_point, inflection_stiffness(n, s)) for s in straight],
-        **_unlike(n, unlike, on_point),
-        "fold": [_counted(on_point, point) for point in fold_line(n, _FOLD_POINTS)],
-    }
+    with one_thread():
+        located = _located(n, window, on_point)
     points = {name: [p for p in found if p] for name, found in located.items()}
     lines = {name: _line(name, found) for name, found in points.items()}
     special = _special(n)
@@ -146,11 +139,28 @@ def _regular(spec: CellRunSpec) -> int:
     return spec.cell.adhesions
 
 
-def _from(low: float, high: float) -> list[float]:
-    """Return contractilities above a lower limit: some next to it, the others beyond."""
-    near = low * (1 + np.geomspace(1e-3, 0.3, _COLUMNS // 2))
-    far = np.geomspace(1.3 * low, max(high, 1.4 * low), _COLUMNS)
-    return [float(load) for load in (*near, *far[1:])]
+def _located(
+    n: int, window: PhaseDiagramSettings, on_point: Callable[[str], None]
+) -> dict[str, list[Transition | None]]:
+    """Return the points of each line, by its name."""
+    flat, folded = inflection_onset(n), rigid_fold(n)
+    # Its shape is that of the softest inflected cell, at radius 2/3: rigid, it is at 1.
+    straight = _loads((2 / 3) ** 3 * flat.sigma_hat, window)
+    unlike = _loads(folded.sigma_hat, window)
+    return {
+        "inflection": [_counted(on_point, inflection_stiffness(n, s)) for s in straight],
+        **_unlike(n, unlike, on_point),
+        "fold": [_counted(on_point, point) for point in fold_line(n, _FOLD_POINTS)],
+    }
+
+
+def _loads(begin: float, window: PhaseDiagramSettings) -> list[float]:
+    """Return contractilities of a window above 1, closer together above a beginning."""
+    low, high = max(window.sigma_hat[0], 1 + 1e-6), max(window.sigma_hat[1], 1.1)
+    even = np.geomspace(low, high, window.columns)
+    near = begin * (1 + np.geomspace(1e-3, 0.3, window.columns // 2))
+    inside = near[(near > low) & (near < high)]
+    return sorted({float(load) for load in (*even, *inside)})
 
 
 def _unlike(

@@ -72,7 +72,7 @@ class Disk:
         given: FloatArray = np.asarray(points, dtype=np.float64)
         corners: IntArray = np.array(triangles, dtype=np.int64)
         _check_arrays(given, corners)
-        loop = _check_topology(len(given), corners)
+        loop = trace_disk(len(given), corners)
         # A power of two takes squares out of reach of overflow, and rounds nothing.
         exponent = int(np.frexp(np.abs(given).max())[1])
         scaled = np.ldexp(given, -exponent)
@@ -163,7 +163,7 @@ def _check_arrays(points: FloatArray, triangles: IntArray) -> None:
     _refuse("vertex", ~used, "belongs to no triangle")
 
 
-def _check_topology(n_v: int, triangles: IntArray) -> IntArray:
+def trace_disk(n_v: int, triangles: IntArray) -> IntArray:
     """Return the loop; raise MeshError unless the triangles form an oriented disk."""
     half = directed_edges(triangles)
     key = np.sort(half, axis=1) @ np.array([n_v, 1])

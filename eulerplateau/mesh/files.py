@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 
 import numpy as np
@@ -9,10 +10,16 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError, SpecError
 from eulerplateau.mesh import formats
+from eulerplateau.mesh.cleaning import split
 from eulerplateau.mesh.disk import Disk
+from eulerplateau.mesh.formats import SOUPS
 from eulerplateau.mesh.generation import generate
+from eulerplateau.mesh.mending import as_disk
+from eulerplateau.mesh.readers import Content, one_line
 from eulerplateau.mesh.spec import MeshSpec
 from eulerplateau.settings import load_toml
+
+_log = logging.getLogger(__name__)
 
 
 def read_disk(path: str | Path) -> Disk:
@@ -26,34 +33,36 @@ def read_disk(path: str | Path) -> Disk:
 
 
 def read_mesh(path: str | Path) -> Disk:
-    """Read a triangulated disk from a .vtp .msh .vtu .vtk .off .ply .stl .obj .glb file.
+    """Read a disk from a .vtp .msh .vtu .vtk .off .ply .stl .obj .glb file.
 
-    Points and lines in the file, and vertices that no triangle uses, are left out. The
-    last three formats store a position more than once where triangles meet; positions
-    equal to the last bit are merged.
+    What is in the way of a disk is mended, and a warning says so: polygons are split,
+    curved triangles taken by their corners, triangles turned over that disagree with the
+    others, vertices left out that no triangle uses. Vertices that coincide are merged only
+    if the file holds no disk otherwise, at best those that do to the last bit.
 
     Raises SpecError if there is no such file, OutputError if it cannot be read, and
     MeshError if it holds anything else than a disk; the vertices that MeshError names are
-    numbered as in the file (after merging).
+    numbered as in the file.
     """
-    points, triangles = read_triangles(path)
+    path = Path(path)
+    content = _content(path)
+    points, triangles = _triangles(content, path)
     if not len(triangles):
-        raise MeshError("mesh", None, f"{path} holds no triangles")
-    outside = ((triangles < 0) | (triangles >= len(points))).any(axis=1)
-    if outside.any():
-        first = int(np.flatnonzero(outside)[0])
-        problem = f"uses a vertex outside 0 ... {len(points) - 1} (in {path})"
-        raise MeshError("triangle", first, problem)
-    used, renumbered = np.unique(triangles, return_inverse=True)
-    try:
-        return Disk.from_triangles(points[used], renumbered.reshape(-1, 3))
-    except MeshError as error:
-        raise _named_as_in_file(error, used, path) from None
+        n = len(points)
+        raise MeshError("mesh", None, f"{path} holds no triangles, but {n} points")
+    disk, lines = as_disk(points, triangles, str(path), path.suffix.lower() in SOUPS)
+    for line in [*_left_out(content, triangles), *lines]:
+        _log.warning("%s: %s", path, line)
+    return disk
 
 
 def read_triangles(path: str | Path) -> tuple[FloatArray, IntArray]:
-    """Return points (n, 3) and triangles (n_t, 3) as the file has them, unchecked."""
-    path = Path(path)
+    """Return points (n, 3) and triangles (n_t, 3) as the file has them, polygons split."""
+    content = _content(Path(path))
+    return _triangles(content, Path(path))
+
+
+def _content(path: Path) -> Content:
     try:
         with path.open("rb") as file:
             empty = not file.read(1)
@@ -64,15 +73,36 @@ def read_triangles(path: str | Path) -> tuple[FloatArray, IntArray]:
     if empty:
         raise MeshError("mesh", None, f"{path} is empty")
     read, _ = formats.format_of(path)
-    try:
-        points, triangles = read(path)
-        return points.astype(np.float64), triangles.astype(np.int64).reshape(-1, 3)
-    except MeshError:
-        raise
-    # The readers raise whatever comes up in a broken file, and meshio even exits.
-    except (Exception, SystemExit) as error:
-        problem = f"{path} is not a whole {path.suffix} file of a triangulated surface"
-        raise MeshError("mesh", None, problem) from error
+    with one_line(path):
+        return read(path)
+
+
+def _triangles(content: Content, path: Path) -> tuple[FloatArray, IntArray]:
+    points, corners, sizes = content.points, content.corners, content.sizes
+    outside = (corners < 0) | (corners >= len(points))
+    if outside.any():
+        polygon = int(np.repeat(np.arange(len(sizes)), sizes)[outside][0])
+        problem = f"uses a vertex outside 0 ... {len(points) - 1} (in {path})"
+        raise MeshError("triangle", polygon, problem)
+    return points, split(points, corners, sizes)[0]
+
+
+def _left_out(content: Content, triangles: IntArray) -> list[str]:
+    """Say what of a file is not in its triangles, or not as it was."""
+    lines = []
+    if content.curved:
+        lines.append(f"{content.curved} second-order polygons are taken by their corners")
+    if larger := int((content.sizes > 3).sum()):
+        lines.append(f"{larger} polygons are split along their shorter diagonals")
+    if smaller := int((content.sizes < 3).sum()):
+        lines.append(f"{smaller} polygons of fewer than 3 corners are left out")
+    every = np.zeros(len(content.points), dtype=bool)
+    every[triangles] = True
+    # Of lines, of curved sides: not forgotten, only no part of the surface.
+    every[content.beside] = True
+    if unused := int((~every).sum()):
+        lines.append(f"{unused} vertices that no triangle uses are left out")
+    return lines
 
 
 def write_mesh(mesh: Disk, path: str | Path) -> None:
@@ -82,13 +112,3 @@ def write_mesh(mesh: Disk, path: str | Path) -> None:
     Raises MeshError for another extension, OutputError if the file cannot be written.
     """
     formats.write_triangles(Path(path), mesh.x * mesh.length, mesh.triangles)
-
-
-def _named_as_in_file(error: MeshError, used: IntArray, path: str | Path) -> MeshError:
-    index = error.index
-    if error.kind == "vertex" and isinstance(index, int):
-        index = int(used[index])
-    elif isinstance(index, tuple):
-        index = (int(used[index[0]]), int(used[index[1]]))
-    problem = str(error).partition(": ")[2]
-    return MeshError(error.kind, index, f"{problem} (in {path})")

@@ -1,8 +1,4 @@
-"""Readers and writers of points and triangles, one pair per library.
-
-A reader returns points (n, 3) and triangles (n_t, 3) and may raise anything on a broken
-file; `files` turns that into the project's errors.
-"""
+"""Which reader and which writer belong to the extension of a mesh file."""
 
 from __future__ import annotations
 
@@ -11,50 +7,41 @@ import logging
 from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError
-from eulerplateau.mesh.vtp import read_vtp, vtp_content
+from eulerplateau.mesh import readers
+from eulerplateau.mesh.readers import Content
+from eulerplateau.mesh.vtp import vtp_content
 from eulerplateau.mesh.whole_files import whole_file
 
 _log = logging.getLogger(__name__)
 
-Reader = Callable[[Path], tuple[NDArray[Any], NDArray[Any]]]
+# A reader may raise anything on a broken file: `readers.one_line` says what it means.
+Reader = Callable[[Path], Content]
 Writer = Callable[[Path, FloatArray, IntArray], None]
 
+# Formats in which triangles share no vertices, so that merging them is nothing to tell.
+SOUPS = {".stl", ".glb"}
 
-def read_polygons(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
+
+def read_polygons(path: Path) -> Content:
     """Read VTK's XML polygons; warn if they are a shape that a run has written."""
-    found = read_vtp(path)
-    if found.field_data.keys() >= {"step", "kL3_alpha"}:
+    file = readers.XmlFile(path.read_bytes())
+    if file.field_data().keys() >= {"step", "kL3_alpha"}:
         _log.warning(
             "%s is a shape of a run: as a mesh its deformed film becomes the rest state; "
             "to start from it keep the run's mesh and set start.file",
             path,
         )
-    return found.points, found.triangles
+    return file.surface()
 
 
 def write_polygons(path: Path, points: FloatArray, triangles: IntArray) -> None:
     """Write VTK's XML polygons, compressed."""
     path.write_bytes(vtp_content(points, triangles))
-
-
-def read_meshio(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Read any format of meshio, which prints and exits where it should raise."""
-    import meshio
-
-    _refuse_half_a_header(path)
-    with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
-        content = meshio.read(path, file_format=_meshio_name(path))
-    kinds = {block.type for block in content.cells} - {"vertex", "line"}
-    if kinds - {"triangle"}:
-        raise _not_triangles(path, f"{', '.join(sorted(kinds - {'triangle'}))} cells")
-    return content.points, content.get_cells_type("triangle")
 
 
 def write_meshio(path: Path, points: FloatArray, triangles: IntArray) -> None:
@@ -66,29 +53,21 @@ def write_meshio(path: Path, points: FloatArray, triangles: IntArray) -> None:
         mesh.write(path, file_format=_meshio_name(path))
 
 
-def _refuse_half_a_header(path: Path) -> None:
-    # meshio would wait for the rest of it for ever.
-    lines = [line.strip() for line in path.read_bytes().splitlines()]
-    if path.suffix.lower() == ".ply" and b"end_header" not in lines:
-        raise ValueError("the header has no end")
-    said = [line for line in lines[1:] if line and not line.startswith(b"#")]
-    if path.suffix.lower() == ".off" and not said:
-        raise ValueError("the header has no counts")
-
-
 def _meshio_name(path: Path) -> str:
-    # By name: meshio would try Ansys first for .msh.
+    # By name: meshio would take .msh for one of Ansys.
     extension = path.suffix.lower().removeprefix(".")
     return "gmsh" if extension == "msh" else extension
 
 
-def read_trimesh(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Read a soup of triangles: positions equal to the last bit are one vertex."""
+def read_glb(path: Path) -> Content:
+    """Read a .glb file by trimesh, all its parts where their scene has them."""
     import trimesh
 
     # trimesh's own merging has an absolute tolerance, which destroys small meshes.
-    soup = trimesh.load_mesh(path, file_type=path.suffix[1:].lower(), process=False)
-    return _merge_equal(np.asarray(soup.vertices), np.asarray(soup.faces))
+    found = trimesh.load_mesh(path, file_type="glb", process=False)
+    triangles = np.asarray(found.faces, dtype=np.int64).reshape(-1, 3)
+    points = np.asarray(found.vertices, dtype=np.float64).reshape(-1, 3)
+    return Content(points, triangles.ravel(), np.full(len(triangles), 3))
 
 
 def write_trimesh(path: Path, points: FloatArray, triangles: IntArray) -> None:
@@ -99,16 +78,6 @@ def write_trimesh(path: Path, points: FloatArray, triangles: IntArray) -> None:
     mesh.export(path, file_type=path.suffix[1:].lower())
 
 
-def read_obj(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Read a Wavefront file by trimesh, which would split quadrangles without a word."""
-    with path.open("rb") as file:
-        for line in file:
-            words = line.split()
-            if words[:1] == [b"f"] and len(words) != 4:
-                raise _not_triangles(path, f"a face of {len(words) - 1} corners")
-    return read_trimesh(path)
-
-
 def write_obj(path: Path, points: FloatArray, triangles: IntArray) -> None:
     """Write a Wavefront file; trimesh would round to a fixed number of decimals."""
     vertices = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in points.tolist()]
@@ -116,29 +85,16 @@ def write_obj(path: Path, points: FloatArray, triangles: IntArray) -> None:
     path.write_text("".join(vertices + faces), encoding="ascii")
 
 
-def _merge_equal(
-    points: NDArray[Any], triangles: NDArray[Any]
-) -> tuple[NDArray[Any], NDArray[Any]]:
-    _, first, place = np.unique(points, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.argsort(order)
-    return points[first[order]], rank[place.ravel()][triangles]
-
-
-def _not_triangles(path: Path, found: str) -> MeshError:
-    return MeshError("mesh", None, f"{path} holds {found}; a film is made of triangles")
-
-
 _FORMATS: dict[str, tuple[Reader, Writer]] = {
     ".vtp": (read_polygons, write_polygons),
-    ".msh": (read_meshio, write_meshio),
-    ".vtu": (read_meshio, write_meshio),
-    ".vtk": (read_meshio, write_meshio),
-    ".off": (read_meshio, write_meshio),
-    ".ply": (read_meshio, write_meshio),
-    ".stl": (read_trimesh, write_trimesh),
-    ".glb": (read_trimesh, write_trimesh),
-    ".obj": (read_obj, write_obj),
+    ".msh": (readers.read_msh, write_meshio),
+    ".vtu": (readers.read_xml, write_meshio),
+    ".vtk": (readers.read_legacy, write_meshio),
+    ".off": (readers.read_off, write_meshio),
+    ".ply": (readers.read_ply, write_meshio),
+    ".stl": (readers.read_stl, write_trimesh),
+    ".glb": (read_glb, write_trimesh),
+    ".obj": (readers.read_obj, write_obj),
 }
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from types import ModuleType
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.errors import MeshError, MissingLibraryError, SpecError
+from eulerplateau.errors import MeshError, SpecError
 from eulerplateau.mesh.disk import Disk
+from eulerplateau.mesh.gmsh_library import started_gmsh
 from eulerplateau.mesh.polygon import perimeter, polygon_area, subdivide, to_unit_scale
 from eulerplateau.mesh.spec import MeshSpec
 
@@ -27,11 +26,7 @@ _GROWTH = 0.3
 # sizes are equal. The others gave the same mesh in each of 8 runs or more.
 _ANGLES = {8: 0.1234567}
 
-_GMSH_PACKAGES = "libgl1 libglu1-mesa libxft2 libxcursor1 libxinerama1 libgomp1"
-
 _OPTIONS = {
-    "General.Terminal": 0,
-    "General.NumThreads": 1,
     "Mesh.MeshSizeExtendFromBoundary": 0,
     "Mesh.MeshSizeFromPoints": 0,
     "Mesh.MeshSizeFromCurvature": 0,
@@ -47,7 +42,9 @@ def generate(spec: MeshSpec) -> Disk:
     Raises SpecError if the size asked for cannot be had, MeshError if Gmsh fails, and
     MissingLibraryError if Gmsh cannot be loaded.
     """
-    with _gmsh() as gmsh:
+    with started_gmsh() as gmsh:
+        for name, value in _OPTIONS.items():
+            gmsh.option.setNumber(name, value)
         if spec.edge_length is not None:
             _refuse_huge(spec, spec.edge_length, "edge_length")
             points, triangles = _triangulate(gmsh, spec, spec.edge_length, spec.edge_length)
@@ -101,24 +98,6 @@ def _refuse_huge(spec: MeshSpec, edge_length: float, key: str) -> None:
             f"found {edge_length:g}; should be at least {shortest:.2g}, "
             f"which gives {_MOST_VERTICES} vertices",
         )
-
-
-@contextmanager
-def _gmsh() -> Iterator[ModuleType]:
-    try:
-        import gmsh
-    except OSError as error:
-        raise MissingLibraryError(
-            f"Gmsh cannot be loaded ({error}): apt-get install {_GMSH_PACKAGES}"
-        ) from None
-    # A user's ~/.gmshrc must not change the mesh; signals only work in the main thread.
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
-    try:
-        for name, value in _OPTIONS.items():
-            gmsh.option.setNumber(name, value)
-        yield gmsh
-    finally:
-        gmsh.finalize()
 
 
 def _triangulate(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from eulerplateau.arrays import FloatArray, IntArray
 
@@ -10,6 +12,26 @@ from eulerplateau.arrays import FloatArray, IntArray
 def directed_edges(triangles: IntArray) -> IntArray:
     """Return the directed edges (3 n_t, 2); edge j of triangle t is row 3 t + j."""
     return triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+
+
+def joints(triangles: IntArray) -> tuple[IntArray, IntArray]:
+    """Return the rows of `directed_edges` that are the same edge, one and the other.
+
+    Of edges that belong to two triangles; (n,) each.
+    """
+    ends = np.sort(directed_edges(triangles), axis=1)
+    order = np.lexsort(ends.T)
+    _, begin, count = np.unique(ends[order], axis=0, return_index=True, return_counts=True)
+    pair = begin[count == 2]
+    return order[pair], order[pair + 1]
+
+
+def pieces(triangles: IntArray) -> int:
+    """Return into how many pieces triangles fall that edges of two of them join."""
+    one, other = joints(triangles)
+    shape = (len(triangles), len(triangles))
+    joined = coo_array((np.ones(len(one)), (one // 3, other // 3)), shape=shape)
+    return int(connected_components(joined, directed=False)[0])
 
 
 def area_vectors(triangles: IntArray, x: FloatArray) -> FloatArray:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.errors import MeshError, OutputError
+from eulerplateau.errors import MeshError
+from eulerplateau.mesh.readers import XmlFile, one_line
 from eulerplateau.mesh.whole_files import write_whole
 
 Fields = Mapping[str, NDArray[Any]]
@@ -102,83 +102,19 @@ def read_vtp(path: Path) -> VtpFile:
     Raises OutputError if the file cannot be opened, and MeshError if it is broken or holds
     other polygons than triangles. Whether they make a surface is not looked at.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise OutputError(path, f"cannot be read: {error.strerror}") from None
-    surface = _parsed(content)
-    if surface is None:
-        raise _mesh_error(path, "is not a whole .vtp file of a triangulated surface")
-    if surface.GetNumberOfStrips():
-        raise _mesh_error(path, "holds triangle strips; a film is made of triangles")
-    sizes = np.diff(_numpy(surface.GetPolys().GetOffsetsArray()))
-    if (sizes != 3).any():
-        corners = int(sizes[sizes != 3][0])
-        problem = f"holds a polygon of {corners} corners; a film is made of triangles"
-        raise _mesh_error(path, problem)
-    return VtpFile(
-        points=_numpy(surface.GetPoints().GetData()).astype(np.float64),
-        triangles=_vertices(surface.GetPolys()).reshape(-1, 3),
-        lines=tuple(_split(surface.GetLines())),
-        point_fields=_fields(surface.GetPointData()),
-        field_data=_fields(surface.GetFieldData()),
-    )
-
-
-def _parsed(content: bytes) -> Any:
-    """Return the vtkPolyData in a file; None of a broken one, which VTK finds empty."""
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-
-    reader: Any = vtkXMLPolyDataReader()
-    reader.ReadFromInputStringOn()
-    reader.SetInputString(content)
-    with _silent_vtk():
-        reader.Update()
-    surface = reader.GetOutput()
-    broken = reader.GetErrorCode() or surface.GetNumberOfPoints() == 0
-    return None if broken else surface
-
-
-@contextmanager
-def _silent_vtk() -> Iterator[None]:
-    from vtkmodules.vtkCommonCore import vtkObject
-
-    before = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.SetGlobalWarningDisplay(0)
-    try:
-        yield
-    finally:
-        vtkObject.SetGlobalWarningDisplay(before)
-
-
-def _mesh_error(path: Path, problem: str) -> MeshError:
-    return MeshError("mesh", None, f"{path} {problem}")
-
-
-def _split(cells: Any) -> list[IntArray]:
-    """Return the vertices (n,) of each cell."""
-    if not cells.GetNumberOfCells():
-        return []
-    return np.split(_vertices(cells), _numpy(cells.GetOffsetsArray())[1:-1])
-
-
-def _vertices(cells: Any) -> IntArray:
-    """Return the vertices of all cells, one after the other."""
-    return _numpy(cells.GetConnectivityArray()).astype(np.int64)
-
-
-def _fields(data: Any) -> dict[str, NDArray[Any]]:
-    """Return the arrays of numbers among a surface's data, by name."""
-    arrays = [data.GetArray(number) for number in range(data.GetNumberOfArrays())]
-    return {array.GetName(): _numpy(array) for array in arrays if array is not None}
-
-
-def _numpy(array: Any) -> NDArray[Any]:
-    from vtkmodules.util import numpy_support
-
-    to_numpy: Any = numpy_support.vtk_to_numpy
-    values: NDArray[Any] = to_numpy(array)
-    return values
+    with one_line(path):
+        file = XmlFile(path.read_bytes())
+        corners, ends = file.cells("Polys")
+        if (np.diff(ends, prepend=0) != 3).any() or len(file.cells("Strips")[1]):
+            raise MeshError("mesh", None, f"{path} holds other polygons than triangles")
+        vertices, stops = file.cells("Lines")
+        return VtpFile(
+            points=file.points(),
+            triangles=corners.reshape(-1, 3),
+            lines=tuple(np.split(vertices, stops[:-1])) if len(stops) else (),
+            point_fields=file.point_fields(),
+            field_data=file.field_data(),
+        )
 
 
 def _array(name: str, values: NDArray[Any]) -> Any:

@@ -38,7 +38,7 @@ def failure_of_child(module: str, *arguments: str, timeout: float | None) -> str
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return f"no picture after {timeout:g} s"
+        return f"no answer after {timeout:g} s"
     except OSError as error:
         return f"cannot be started: {error.strerror}"
     return _reason(done.returncode, done.stderr) if done.returncode else ""

@@ -167,7 +167,7 @@ def _ears(points: FloatArray, around: IntArray) -> NDArray[np.int64]:
             ear = before[place], ring[place], after[place]
         found.append(ear)
         left.pop(int(place))
-    found.append(tuple(left))
+    found.append((left[0], left[1], left[2]))
     return around[np.array(found)]
 
 
@@ -177,8 +177,8 @@ def _flattened(x: FloatArray) -> FloatArray:
     normal = np.cross(centred, np.roll(centred, -1, axis=0)).sum(axis=0)
     length = float(np.linalg.norm(normal))
     if length == 0.0:
-        return centred[:, :2].copy()
-    axes = np.linalg.svd((normal / length)[None])[2][1:]
+        return np.ascontiguousarray(centred[:, :2])
+    axes: FloatArray = np.linalg.svd((normal / length)[None])[2][1:]
     if np.cross(*axes) @ normal < 0:
         axes = axes[::-1]
     plane: FloatArray = centred @ axes.T

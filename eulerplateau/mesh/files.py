@@ -14,7 +14,7 @@ from eulerplateau.mesh.cleaning import split
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.formats import SOUPS
 from eulerplateau.mesh.generation import generate
-from eulerplateau.mesh.mending import as_disk
+from eulerplateau.mesh.mending import as_disk, counted
 from eulerplateau.mesh.readers import Content, one_line
 from eulerplateau.mesh.spec import MeshSpec
 from eulerplateau.settings import load_toml
@@ -91,17 +91,27 @@ def _left_out(content: Content, triangles: IntArray) -> list[str]:
     """Say what of a file is not in its triangles, or not as it was."""
     lines = []
     if content.curved:
-        lines.append(f"{content.curved} second-order polygons are taken by their corners")
+        what = counted(content.curved, "polygon is", "polygons are")
+        lines.append(f"{what} second-order: only the corners are taken")
     if larger := int((content.sizes > 3).sum()):
-        lines.append(f"{larger} polygons are split along their shorter diagonals")
+        what = counted(larger, "polygon is", "polygons are")
+        lines.append(f"{what} split along the shorter diagonal")
     if smaller := int((content.sizes < 3).sum()):
-        lines.append(f"{smaller} polygons of fewer than 3 corners are left out")
+        what = counted(
+            smaller,
+            "polygon of fewer than 3 corners is",
+            "polygons of fewer than 3 corners are",
+        )
+        lines.append(f"{what} left out")
     every = np.zeros(len(content.points), dtype=bool)
     every[triangles] = True
     # Of lines, of curved sides: not forgotten, only no part of the surface.
     every[content.beside] = True
     if unused := int((~every).sum()):
-        lines.append(f"{unused} vertices that no triangle uses are left out")
+        what = counted(
+            unused, "vertex that no triangle uses is", "vertices that no triangle uses are"
+        )
+        lines.append(f"{what} left out")
     return lines
 
 

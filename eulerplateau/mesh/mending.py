@@ -37,7 +37,8 @@ def as_disk(
         problem = error
     scattered = pieces(triangles)
     used = points[np.unique(triangles)]
-    size = float(np.linalg.norm(np.ptp(used, axis=0)))
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = float(np.ptp(used, axis=0).max())
     for tolerance in (0.0, _NEAR * size):
         if not np.isfinite(size) or (tolerance and _is_disk(triangles)):
             break  # of a wrong place or a sliver only: near vertices are not to blame
@@ -47,7 +48,10 @@ def as_disk(
             continue
         lines = [_merging(count, tolerance)] if tolerance or not soup else []
         if lost := len(triangles) - len(kept):
-            lines.append(f"{lost} triangles that have no area after that are left out")
+            what = counted(
+                lost, "triangle without an area is", "triangles without an area are"
+            )
+            lines.append(f"{what} left out")
         try:
             disk, more = _attempt(points, joined, source)
         except MeshError as error:
@@ -66,8 +70,8 @@ def _attempt(
     try:
         alike, turned = oriented(renumbered.reshape(-1, 3))
         if count := int(turned.sum()):
-            of = f"{count} of {len(turned)} triangles"
-            lines.append(f"{of} are turned over to agree with the others")
+            of = f"{count} of {len(turned)} triangles {'is' if count == 1 else 'are'}"
+            lines.append(f"{of} turned over to agree with the others")
         return Disk.from_triangles(points[used], alike), lines
     except MeshError as error:
         raise _named_as_in_file(error, used, source) from None
@@ -83,9 +87,13 @@ def _is_disk(triangles: IntArray) -> bool:
 
 
 def _merging(count: int, tolerance: float) -> str:
-    if tolerance:
-        return f"{count} vertices are merged with others within {_NEAR:g} of the size"
-    return f"{count} vertices are merged with others at the same places"
+    where = f"within {_NEAR:g} of the size" if tolerance else "at the same places"
+    return f"{counted(count, 'vertex is', 'vertices are')} merged with others {where}"
+
+
+def counted(count: int, one: str, many: str) -> str:
+    """Return the count with the word for one or for many."""
+    return f"{count} {one if count == 1 else many}"
 
 
 def _named_as_in_file(error: MeshError, used: IntArray, source: str) -> MeshError:

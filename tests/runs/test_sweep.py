@@ -243,7 +243,7 @@ def test_broken_mesh_missing_mesh_and_unwritable_folder_are_told_apart(
     tmp_path: Path, spec: Spec
 ) -> None:
     broken = tmp_path / "broken.off"
-    broken.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 0 1 3\n")
+    broken.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n")
     with pytest.raises(MeshError):
         run_sweep(spec([1], mesh={"file": str(broken)}), tmp_path / "a")
     with pytest.raises(SpecError):

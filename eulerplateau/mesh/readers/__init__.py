@@ -4,12 +4,12 @@
 `legacy_vtk` and `xml_vtk` (`vtk_cells` for both) read the formats of their names, and
 `gmsh_files` has Gmsh read .msh in a child process, which is `__main__`.
 
-No library reads these as it should (July 2026): VTK rounds .ply and .obj to single
-precision, splits vertices at the seams of a texture and is killed by a count that its file
-does not keep; meshio knows no legacy polygons, no .off with its header on one line, no
-texture list; trimesh splits polygons as they come, and none but Gmsh reads all of .msh. Text
-and numbers, read here, cannot kill anything; what takes memory is compared with the file's
-size first.
+No one library reads these as it should (VTK 9.7, meshio 5.3, trimesh 5.2): VTK rounds .ply
+and .obj to single precision, reads a cut legacy file as a smaller one, and a count that a
+file does not keep can kill it; meshio knows no legacy polygons, no .off with its header on
+one line, no texture list; trimesh splits polygons as they come. Only Gmsh reads all of
+.msh. What is read here cannot kill the program: a count is compared with what the file
+holds before it takes memory.
 """
 
 import lazy_loader

@@ -20,7 +20,6 @@ def _read(path: Path, target: Path) -> None:
     with started_gmsh() as gmsh:
         mesh = gmsh.model.mesh
         gmsh.logger.start()
-        # Not `open`, which would also carry out the commands in path.opt.
         gmsh.merge(str(path))
         wrong = [line for line in gmsh.logger.get() if line.startswith("Error")]
         if wrong:

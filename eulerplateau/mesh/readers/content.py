@@ -35,11 +35,11 @@ class Content:
     beside: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
 
-class NotWhole(ValueError):
+class NotWholeError(ValueError):
     """A file ends before it has what it promises; the text says what is missing."""
 
 
-class Foreign(ValueError):
+class ForeignError(ValueError):
     """A file is something else than a surface; the text goes on after the file's name."""
 
 
@@ -55,9 +55,9 @@ def one_line(path: Path) -> Iterator[None]:
         raise
     except OSError as error:
         raise OutputError(path, f"cannot be read: {error.strerror}") from None
-    except NotWhole as error:
+    except NotWholeError as error:
         raise _mesh_error(path, f"is not a whole {path.suffix} file: {error}") from None
-    except Foreign as error:
+    except ForeignError as error:
         raise _mesh_error(path, str(error)) from None
     # A damaged file: numbers that are none, counts below zero, unknown types.
     except Exception as error:
@@ -71,9 +71,9 @@ def _mesh_error(path: Path, problem: str) -> MeshError:
 
 
 def promise(kept: bool, what: str) -> None:
-    """Raise NotWhole unless a promise is `kept`; `what` goes on after "it promises"."""
+    """Raise NotWholeError unless a promise is `kept`: "it promises " and `what`."""
     if not kept:
-        raise NotWhole(f"it promises {what}")
+        raise NotWholeError(f"it promises {what}")
 
 
 class Words:
@@ -89,7 +89,7 @@ class Words:
         return len(self._words) - self._taken
 
     def take(self, count: int, what: str) -> Sequence[bytes]:
-        """Return the next `count` words, numbers of `what`; raises NotWhole."""
+        """Return the next `count` words, numbers of `what`; raises NotWholeError."""
         if count < 0:
             raise ValueError(f"it counts {count} {what}")
         promise(count <= self.left, f"more {what} than it holds")

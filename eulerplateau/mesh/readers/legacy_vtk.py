@@ -9,8 +9,8 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh.readers.content import (
     Content,
-    Foreign,
-    NotWhole,
+    ForeignError,
+    NotWholeError,
     promise,
     rows,
 )
@@ -30,7 +30,7 @@ def read_legacy(path: Path) -> Content:
     """Read a surface; the data of its points and cells are left out."""
     content = path.read_bytes()
     if content[:14] != b"# vtk DataFile":
-        raise Foreign("is no legacy .vtk file: it does not begin with # vtk DataFile")
+        raise ForeignError("is no legacy .vtk file: it does not begin with # vtk DataFile")
     file = _File(content)
     dataset = file.dataset()
     points: FloatArray | None = None
@@ -55,7 +55,7 @@ def read_legacy(path: Path) -> Content:
         else:
             raise ValueError(f"{section[:20]!r} is no section that is known")
     if points is None:
-        raise NotWhole(f"its {dataset} has no points yet")
+        raise NotWholeError(f"its {dataset} has no points yet")
     sizes = [np.diff(ends, prepend=0) for _, ends in found]
     count, typed = sum(map(len, sizes)), sum(map(len, kinds))
     promise(count == typed, f"{count} cells and has the types of {typed}")
@@ -73,15 +73,15 @@ class _File:
         self._text = self._line().strip().upper() == b"ASCII"
 
     def dataset(self) -> str:
-        """Return the kind of data set; raises Foreign for one that is no surface."""
+        """Return the kind of data set; raises ForeignError for one that is no surface."""
         words = self.words()
         while words[:1] == ["FIELD"]:
             self.skip_field(int(words[2]))
             words = self.words()
         if len(words) < 2:
-            raise NotWhole("it has no DATASET yet")
+            raise NotWholeError("it has no DATASET yet")
         if words[1].upper() not in ("POLYDATA", "UNSTRUCTURED_GRID"):
-            raise Foreign(f"holds a {words[1]}; a film is a surface of triangles")
+            raise ForeignError(f"holds a {words[1]}; a film is a surface of triangles")
         return words[1]
 
     def words(self) -> list[str]:
@@ -98,7 +98,9 @@ class _File:
             self._place = before
             ends = self._named("OFFSETS", count)
             corners = self._named("CONNECTIVITY", size)
-            if len(ends) and (ends[0] != 0 or ends[-1] != size or (np.diff(ends) < 0).any()):
+            if len(ends) and (
+                ends[0] != 0 or ends[-1] != size or (np.diff(ends) < 0).any()
+            ):
                 raise ValueError("its offsets do not fit its cells")
             return corners, ends[1:]
         self._place = before
@@ -151,7 +153,9 @@ class _File:
                 words = self.words()
             promise(len(words) >= 4, "more fields than it holds")
             if words[3].lower() not in _TYPES:
-                raise Foreign("has fields of text before its points: write it without them")
+                raise ForeignError(
+                    "has fields of text before its points: write it without them"
+                )
             self.numbers(int(words[1]) * int(words[2]), words[3], "fields")
 
     def _named(self, name: str, count: int) -> IntArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from eulerplateau.mesh.readers.content import Content, Foreign, polygons, promise, rows
+from eulerplateau.mesh.readers.content import Content, ForeignError, polygons, promise, rows
 
 # Texture, colour, normal; homogeneous or other dimensions are not of this space.
 _KEYWORD = re.compile(rb"(ST)?C?N?(4?n?)OFF")
@@ -16,21 +16,23 @@ def read_off(path: Path) -> Content:
     split = (line.partition(b"#")[0].split() for line in path.read_bytes().splitlines())
     lines = [words for words in split if words]
     if not lines:
-        raise Foreign("holds nothing but comments")
+        raise ForeignError("holds nothing but comments")
     keyword = _KEYWORD.fullmatch(lines[0][0])
     if keyword:
         if keyword[2]:
-            raise Foreign("holds points that are not of three dimensions")
+            raise ForeignError("holds points that are not of three dimensions")
         if lines[0][1:2] == [b"BINARY"]:
-            raise Foreign("is a binary .off file: write it as text")
+            raise ForeignError("is a binary .off file: write it as text")
         lines[0] = lines[0][1:]
         lines = lines if lines[0] else lines[1:]
     elif not lines[0][0].isdigit():
-        raise Foreign("is no .off file: it does not begin with OFF")
+        raise ForeignError("is no .off file: it does not begin with OFF")
     promise(bool(lines) and len(lines[0]) >= 2, "no counts yet")
     n, count = int(lines[0][0]), int(lines[0][1])
     found = len(lines) - 1
-    promise(n >= 0 and count >= 0 and n + count <= found, f"{n} + {count} lines, not {found}")
+    promise(
+        n >= 0 and count >= 0 and n + count <= found, f"{n} + {count} lines, not {found}"
+    )
     if n + count < found:
         raise ValueError(f"it promises {n} + {count} lines and holds {found}")
     places, faces = lines[1 : n + 1], lines[n + 1 :]

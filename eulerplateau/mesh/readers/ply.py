@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,8 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.readers.content import (
     Content,
-    Foreign,
-    NotWhole,
+    ForeignError,
+    NotWholeError,
     Words,
     polygons,
     promise,
@@ -47,13 +48,13 @@ def read_ply(path: Path) -> Content:
         raise ValueError("it holds more than its header promises")
     vertices = tables.get("vertex", {})
     if not {"x", "y", "z"} <= vertices.keys():
-        raise Foreign("holds no vertices with x, y and z")
+        raise ForeignError("holds no vertices with x, y and z")
     points = rows(np.array([vertices[axis] for axis in "xyz"], dtype=np.float64).T)
     face = tables.get("face", {})
     faces = face.get("vertex_indices", face.get("vertex_index", []))
     for strip in tables.get("tristrips", {}).get("vertex_indices", []):
         ends = [-1, *(place for place, v in enumerate(strip) if v == -1), len(strip)]
-        parts = [strip[a + 1 : b] for a, b in zip(ends, ends[1:], strict=False)]
+        parts = [strip[a + 1 : b] for a, b in itertools.pairwise(ends)]
         faces = [*faces, *strips(parts)]
     return Content(points, *polygons(faces))
 
@@ -61,7 +62,7 @@ def read_ply(path: Path) -> Content:
 def _header(content: bytes) -> tuple[str, list[_Element], bytes]:
     """Return the byte order ("" of text), the elements and what follows the header."""
     if content[:3] != b"ply":
-        raise Foreign("is no .ply file: it does not begin with ply")
+        raise ForeignError("is no .ply file: it does not begin with ply")
     order, elements, place = None, [], 0
     while True:
         end = content.find(b"\n", place)
@@ -69,7 +70,7 @@ def _header(content: bytes) -> tuple[str, list[_Element], bytes]:
         if words[:1] == ["end_header"]:
             break
         if end < 0:
-            raise NotWhole("its header has no end")
+            raise NotWholeError("its header has no end")
         place = end + 1
         if words[:1] == ["format"]:
             order = _ORDERS.get(words[1])
@@ -120,7 +121,8 @@ class _Binary:
             return {}
         what = f"more rows of {element.name} than it holds"
         promise(element.count <= len(self._body) - self._place, what)
-        start, sizes = self._place, []
+        start = self._place
+        sizes: list[int | None] = []
         first = self._row(element, what, sizes)
         kind = self._kind(element, sizes)
         if start + element.count * kind.itemsize <= len(self._body):

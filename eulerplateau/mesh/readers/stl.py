@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eulerplateau.mesh.readers.content import Content, Foreign, promise, rows
+from eulerplateau.mesh.readers.content import Content, ForeignError, promise, rows
 
 _HEADER, _TRIANGLE = 84, 50
 _PLACE = re.compile(rb"^\s*vertex\s+(\S+)\s+(\S+)\s+(\S+)\s*$", re.MULTILINE)
@@ -36,7 +36,7 @@ def _binary(content: bytes) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]
     held = (len(content) - _HEADER) // _TRIANGLE
     text = sum(32 <= byte < 127 or byte in b"\t\r\n" for byte in content) == len(content)
     if text:
-        raise Foreign("is no .stl file: it does not begin with solid")
+        raise ForeignError("is no .stl file: it does not begin with solid")
     promise(count <= held, f"{count} triangles and holds {held}")
     if len(content) != _HEADER + count * _TRIANGLE:
         raise ValueError(f"it promises {count} triangles and is longer than they are")

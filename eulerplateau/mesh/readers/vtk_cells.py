@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.mesh.readers.content import Content, Foreign, polygons, strips
+from eulerplateau.mesh.readers.content import Content, ForeignError, polygons, strips
 
 # Points and lines, straight or curved: no part of the surface.
 _LOWER = {0, 1, 2, 3, 4, 21, 35, 68, 75}
@@ -19,7 +19,7 @@ _SOLIDS = {10: "tetrahedra", 11: "voxels", 12: "hexahedra", 13: "wedges", 14: "p
 def of_cells(
     points: FloatArray, corners: IntArray, ends: IntArray, kinds: IntArray
 ) -> Content:
-    """Return the polygons among cells; raises Foreign where there are solid ones.
+    """Return the polygons among cells; raises ForeignError where there are solid ones.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def of_cells(
     other = set(kinds.tolist()) - _LOWER - _POLYGONS - _CURVED.keys()
     for kind in sorted(other - {_STRIP, _PIXEL, _QUADRATIC_POLYGON}):
         name = _SOLIDS.get(kind, f"cells of VTK's type {kind}")
-        raise Foreign(f"holds {name}; a film is a surface of triangles")
+        raise ForeignError(f"holds {name}; a film is a surface of triangles")
     sizes = np.diff(ends, prepend=0)
     if (kinds == 5).all() and (sizes == 3).all():
         return Content(points, corners, sizes)

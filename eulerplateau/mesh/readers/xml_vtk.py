@@ -15,7 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.mesh.readers.content import Content, Foreign, NotWhole, promise, rows
+from eulerplateau.mesh.readers.content import (
+    Content,
+    ForeignError,
+    NotWholeError,
+    promise,
+    rows,
+)
 from eulerplateau.mesh.readers.vtk_cells import of_cells
 
 _TYPES = {
@@ -39,13 +45,13 @@ class XmlFile:
         begin = content.find(b"<AppendedData")
         head = content if begin < 0 else content[:begin] + b"</VTKFile>"
         if b"<VTKFile" not in content[:2000]:
-            raise Foreign("is no XML file of VTK: it does not begin with <VTKFile")
+            raise ForeignError("is no XML file of VTK: it does not begin with <VTKFile")
         if not content.rstrip().endswith(b"</VTKFile>"):
-            raise NotWhole("it has no end")
+            raise NotWholeError("it has no end")
         root = ElementTree.fromstring(head)
         self.kind = root.get("type", "")
         if self.kind not in ("PolyData", "UnstructuredGrid"):
-            raise Foreign(f"holds a {self.kind}; a film is a surface of triangles")
+            raise ForeignError(f"holds a {self.kind}; a film is a surface of triangles")
         self._order = ">" if root.get("byte_order") == "BigEndian" else "<"
         self._head = self._order + ("u8" if root.get("header_type") == "UInt64" else "u4")
         self._compressor = root.get("compressor", "")
@@ -101,7 +107,9 @@ class XmlFile:
                 ends.append(stops + passed)
                 passed += len(here)
             elif promised:
-                raise NotWhole(f"it promises {promised} {section.lower()} and holds none")
+                raise NotWholeError(
+                    f"it promises {promised} {section.lower()} and holds none"
+                )
             before += int(piece.get("NumberOfPoints", 0))
         return np.concatenate(corners), np.concatenate(ends)
 
@@ -116,7 +124,7 @@ class XmlFile:
         return self._fields(self._data.find("FieldData"))
 
     def values(self, array: ElementTree.Element) -> NDArray[Any]:
-        """Return the numbers of an array, as they come; raises NotWhole."""
+        """Return the numbers of an array, as they come; raises NotWholeError."""
         kind = self._order + _TYPES[array.get("type", "")]
         if array.get("format") == "ascii":
             words = _text(array).split()
@@ -130,7 +138,7 @@ class XmlFile:
         for array in piece.findall(f"{section}/DataArray"):
             if array.get("Name") == name:
                 return self.values(array).astype(np.int64)
-        raise NotWhole(f"its {section} have no {name}")
+        raise NotWholeError(f"its {section} have no {name}")
 
     def _fields(self, parent: ElementTree.Element | None) -> dict[str, NDArray[Any]]:
         found = {}
@@ -157,7 +165,9 @@ class XmlFile:
         promise(len(stored) >= size, "an array that has no length")
         first = int(np.frombuffer(stored, self._head, 1)[0])
         if not self._compressor:
-            promise(first <= len(stored) - size, f"an array of {first} bytes, and ends before")
+            promise(
+                first <= len(stored) - size, f"an array of {first} bytes, and ends before"
+            )
             return stored[size : size + first]
         promise((first + 3) * size <= len(stored), f"{first} blocks, and ends before")
         if not first:
@@ -201,11 +211,15 @@ def _from_base64(text: bytes) -> bytes:
 
 
 def _from_lz4(packed: bytes, size: int) -> bytes:
-    from vtkmodules.util import numpy_support
+    from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkIOCore import vtkLZ4DataCompressor
 
-    to_vtk: Any = numpy_support.numpy_to_vtk
-    to_numpy: Any = numpy_support.vtk_to_numpy
-    given = to_vtk(np.frombuffer(packed, np.uint8), deep=True)
-    found = vtkLZ4DataCompressor().Uncompress(given, size)
-    return bytes(to_numpy(found).tobytes()) if found is not None else b""
+    compressor: Any = vtkLZ4DataCompressor()
+    given, found = np.frombuffer(packed, np.uint8), np.zeros(size, np.uint8)
+    before = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.SetGlobalWarningDisplay(0)
+    try:
+        held = compressor.Uncompress(given, len(given), found, size)
+    finally:
+        vtkObject.SetGlobalWarningDisplay(before)
+    return found[:held].tobytes()

@@ -67,7 +67,8 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     except OSError as error:
         raise OutputError(path, f"cannot be read: {error.strerror}") from None
     try:
-        return tomllib.loads(text.decode("utf-8"))
+        # Some editors begin a file with a mark of its byte order.
+        return tomllib.loads(text.decode("utf-8-sig"))
     except ValueError as error:
         raise SpecError(str(path), f"is not valid TOML: {error}") from None
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.overrides import load_single
+from eulerplateau.cli.overrides import load_single, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="The folder to write to. Default: beside RUN.toml, with its name and -branches.",
+    help="The folder to write to. Default: beside RUN.toml, with its name, what is set and "
+    "-branches.",
 )
 @click.option(
     "--set",
@@ -39,10 +40,11 @@ def branches(
     their loads located by an eigenvalue's crossing), shapes/*.vtp with the critical
     modes, branches.pvd (for ParaView), run.json, branches.png.
     """
-    from eulerplateau.runs import load_run
+    from eulerplateau.runs import load_run, run_name
 
     run = load_single(spec, settings, load_run)
-    folder = out or spec.with_name(f"{spec.stem}-branches")
+    name = run_name(spec, single_values(settings))
+    folder = out or spec.with_name(f"{name}-branches")
     result = _explore(run, folder, quiet)
     drawn = ["branches.csv", "special_points.csv", "branches.pvd"]
     if pictures:

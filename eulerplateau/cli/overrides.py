@@ -18,9 +18,12 @@ def parse_setting(text: str) -> tuple[str, list[Any]]:
     if not equals or not key:
         raise click.BadParameter(f"{text!r} should be KEY=VALUE,...", param_hint="--set")
     try:
-        return key, tomllib.loads(f"values = [{given}]")["values"]
+        values = tomllib.loads(f"values = [{given}]")["values"]
     except tomllib.TOMLDecodeError:
-        return key, given.split(",")
+        values = given.split(",")
+    if not values or "" in values:
+        raise click.BadParameter(f"{text!r} should give a value", param_hint="--set")
+    return key, values
 
 
 def load_single(
@@ -29,10 +32,15 @@ def load_single(
     """Read a specification by `read`; each of `settings` is KEY=VALUE, a single value."""
     from eulerplateau.runs import load_with
 
+    return load_with(path, single_values(settings), read)
+
+
+def single_values(settings: tuple[str, ...]) -> dict[str, Any]:
+    """Return the values {dotted key: value} of `settings`, each KEY=VALUE."""
     overrides = {}
     for text in settings:
         key, values = parse_setting(text)
         if len(values) != 1:
             raise click.BadParameter(f"{text!r} should give one value", param_hint="--set")
         overrides[key] = values[0]
-    return load_with(path, overrides, read)
+    return overrides

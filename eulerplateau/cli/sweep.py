@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     "--out",
     type=click.Path(path_type=Path),
     help="The run folder; for several runs, the folder that holds theirs. "
-    "Default: beside RUN.toml, with its name.",
+    "Default: beside RUN.toml, with its name and what is set.",
 )
 @click.option("--solver", help="newton or cg; short for --set solver.name=NAME.")
 @click.option(

@@ -4,6 +4,8 @@
     making.py    `mesh_polygon`; spec.py: what a file of meshes/ may say; polygon.py: the
                  kinds of polygons, to which another is added; generation.py: Gmsh
     files.py     mesh files, formats.py: their formats, to which another is added; vtp.py
+    readers/     what a file holds, format by format; mending.py: a disk made of it, by the
+                 steps of cleaning.py
     measures.py  the numbers of a shape that become columns of sweep.csv, on curvature.py,
                  waist.py (twist) and crossings.py (self-intersections)
     drawing/     how a film is drawn, in a child process: one shape, or those of a run

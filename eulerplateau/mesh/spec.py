@@ -20,11 +20,21 @@ ALGORITHMS = {
 }
 
 
+# Far more than a loop of a mesh that can be solved has.
+_MOST_SIDES = 100_000
+
+# Each is compared with each: a file with more corners is the loop of a mesh already.
+_MOST_CORNERS = 2_000
+
+# A longer ellipse has no mesh of at most a million vertices that fits into it.
+_LONGEST = 1_000.0
+
+
 class RegularPolygon(Settings):
     """The regular polygon of circumradius 1 with a corner on the x axis."""
 
     kind: Literal["regular"]
-    sides: int = Field(ge=3)
+    sides: int = Field(ge=3, le=_MOST_SIDES)
 
     def corners(self, edge_length: float) -> FloatArray:
         """Return the corners (n, 2), counter-clockwise."""
@@ -35,7 +45,7 @@ class StretchedHexagon(Settings):
     """The regular hexagon of circumradius 1, stretched by `factor` along a corner axis."""
 
     kind: Literal["stretched-hexagon"]
-    factor: float = Field(gt=0)
+    factor: float = Field(ge=1 / _LONGEST, le=_LONGEST)
 
     def corners(self, edge_length: float) -> FloatArray:
         """Return the corners (6, 2), counter-clockwise."""
@@ -49,7 +59,7 @@ class LengthenedHexagon(Settings):
     """
 
     kind: Literal["lengthened-hexagon"]
-    half_length: float = Field(gt=0.58)
+    half_length: float = Field(gt=0.58, le=_LONGEST)
 
     def corners(self, edge_length: float) -> FloatArray:
         """Return the corners (6, 2), counter-clockwise."""
@@ -63,8 +73,8 @@ class Ellipse(Settings):
     """
 
     kind: Literal["ellipse"]
-    aspect: float = Field(ge=1)
-    sides: int | None = Field(default=None, ge=3)
+    aspect: float = Field(ge=1, le=_LONGEST)
+    sides: int | None = Field(default=None, ge=3, le=_MOST_SIDES)
 
     def corners(self, edge_length: float) -> FloatArray:
         """Return the corners (n, 2), counter-clockwise."""
@@ -76,7 +86,7 @@ class Circle(Settings):
     """The regular polygon in a circle of radius 1; without `sides`, a side is an edge."""
 
     kind: Literal["circle"]
-    sides: int | None = Field(default=None, ge=3)
+    sides: int | None = Field(default=None, ge=3, le=_MOST_SIDES)
 
     def corners(self, edge_length: float) -> FloatArray:
         """Return the corners (n, 2), counter-clockwise."""
@@ -95,6 +105,11 @@ class Corners(Settings):
     def _bounds_a_region(
         cls, points: tuple[tuple[float, float], ...]
     ) -> tuple[tuple[float, float], ...]:
+        if len(points) > _MOST_CORNERS:
+            raise ValueError(
+                f"should be at most {_MOST_CORNERS} corners, not {len(points)}: "
+                "give a loop so fine as a mesh file"
+            )
         ordered = polygon.counter_clockwise(points).tolist()
         return tuple((x, y) for x, y in ordered)
 

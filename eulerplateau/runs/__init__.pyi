@@ -13,7 +13,7 @@ from .phase_diagram import (
     PhaseDiagram as PhaseDiagram,
     run_phase_diagram as run_phase_diagram,
 )
-from .plan import load_with as load_with, planned as planned
+from .plan import load_with as load_with, planned as planned, run_name as run_name
 from .record import Run as Run, read_run as read_run, read_runs as read_runs
 from .running import run as run
 from .series import (

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from eulerplateau.errors import SpecError
-from eulerplateau.runs.plan import load_with
+from eulerplateau.runs.plan import load_with, run_name
 from eulerplateau.runs.record import Run, read_run
 from eulerplateau.runs.spec import RunSpec, load_run
 
@@ -27,7 +27,8 @@ def run(
     Parameters
     ----------
     spec : a file such as runs/elongated.toml, or what such a file holds
-    folder : where to; by default beside the file, with its name (and -branches)
+    folder : where to; by default beside the file, with its name and what is replaced
+        (and -branches)
         An earlier run there is replaced.
     settings : {dotted key: value}
         Keys of a file to be replaced, as in {"start.seed": 3}.
@@ -41,7 +42,7 @@ def run(
     if isinstance(spec, str | Path):
         path = Path(spec)
         chosen = load_with(path, settings or {}, load_run)
-        name = f"{path.stem}-branches" if branches else path.stem
+        name = run_name(path, settings or {}) + ("-branches" if branches else "")
         target = path.with_name(name) if folder is None else Path(folder)
     else:
         if settings:

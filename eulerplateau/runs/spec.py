@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,6 +11,7 @@ from pydantic import Discriminator, Field, Tag, field_validator, model_validator
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import MeshSpec
+from eulerplateau.runs.loads import Load as Load, Loads, in_order as in_order
 from eulerplateau.settings import Model, Settings, read_toml, validate
 
 # Keys that name a file.
@@ -78,59 +78,6 @@ class StartSettings(Settings):
         return given
 
 
-class Range(Settings):
-    """Equally spaced values, both ends included (the last may fall short of `stop`)."""
-
-    start: float = Field(ge=0)
-    stop: float = Field(ge=0)
-    step: float = Field(gt=0)
-
-    @field_validator("stop")
-    @classmethod
-    def _upwards(cls, stop: float, info: Any) -> float:
-        if stop < info.data.get("start", 0):
-            raise ValueError(
-                "should not be below start: sweep.direction turns a sweep round"
-            )
-        return stop
-
-    def values(self) -> list[float]:
-        """Return the values, ascending."""
-        # Half an ulp-sized step of slack: 0.1 * 3 must not lose the end of the range.
-        count = int(np.floor((self.stop - self.start) / self.step * (1 + 1e-12))) + 1
-        return [float(self.start + i * self.step) for i in range(count)]
-
-
-class Refinement(Settings):
-    """Values onset * (1 + eps), eps geometrically spaced: for scaling laws at an onset."""
-
-    onset: float = Field(gt=0)
-    nearest: float = Field(gt=0)
-    farthest: float = Field(gt=0)
-    count: int = Field(ge=2)
-
-    def values(self) -> list[float]:
-        """Return the values, ascending."""
-        distances = np.geomspace(self.nearest, self.farthest, self.count)
-        return sorted(float(v) for v in self.onset * (1 + distances))
-
-
-def _kind_of_load(given: Any) -> str:
-    """Tell loads apart, as read from TOML and as the models that are written out."""
-    if isinstance(given, Refinement) or (isinstance(given, dict) and "onset" in given):
-        return "refinement"
-    return "range" if isinstance(given, Range | dict) else "number"
-
-
-# Told apart beforehand, so that a mistake in one is not reported as one in another.
-Load = Annotated[
-    Annotated[float, Tag("number")]
-    | Annotated[Range, Tag("range")]
-    | Annotated[Refinement, Tag("refinement")],
-    Discriminator(_kind_of_load),
-]
-
-
 class SweepSettings(Settings):
     """Which loads, in which order.
 
@@ -144,7 +91,7 @@ class SweepSettings(Settings):
     direction : "up", "down" or "up-down"
     """
 
-    loads: tuple[Load, ...] = Field(min_length=1)
+    loads: Loads
     quantity: Literal["kL3_alpha", "k", "sigma_hat", "sigma"] | None = None
     direction: Literal["up", "down", "up-down"] = "up"
 
@@ -159,16 +106,6 @@ class SweepSettings(Settings):
     def values(self) -> list[float]:
         """Return the values in the order in which they are swept."""
         return in_order(self.loads, self.direction)
-
-
-def in_order(loads: Sequence[float | Range | Refinement], direction: str) -> list[float]:
-    """Return all that `loads` list, each value once, rising, falling, or both in turn."""
-    listed = [[load] if isinstance(load, float) else load.values() for load in loads]
-    rising = sorted({value for values in listed for value in values})
-    if direction == "up":
-        return rising
-    falling = rising[::-1]
-    return falling if direction == "down" else rising + falling[1:]
 
 
 class SolverSettings(Settings):
@@ -211,6 +148,9 @@ class BranchSettings(Settings):
 
 
 def _kind_of_mesh(given: Any) -> str:
+    if isinstance(given, str):
+        problem = f'found "{given}"; should be a section: write mesh.file = "{given}"'
+        raise SpecError("mesh", problem)
     specified = isinstance(given, dict) and "file" not in given
     return "specified" if specified or isinstance(given, MeshSpec) else "stored"
 
@@ -284,8 +224,16 @@ def read_spec(path: Path, overrides: dict[str, Any], model: type[Model]) -> Mode
         name, _, entry = key.partition(".")
         section = data.get(name)
         if isinstance(section, dict) and isinstance(section.get(entry), str):
-            section[entry] = str(path.parent / section[entry])
+            section[entry] = str(path.parent / at_home(key, section[entry]))
     return validate(data, model, str(path))
+
+
+def at_home(key: str, file: str) -> Path:
+    """Return the path of a file, `~` being the home directory; SpecError if it has none."""
+    try:
+        return Path(file).expanduser()
+    except RuntimeError:
+        raise SpecError(key, f"found {file!r}; whose home directory is not known") from None
 
 
 def _override(data: dict[str, Any], key: str, value: Any) -> None:

@@ -110,7 +110,7 @@ def test_several_values_of_a_key_make_several_runs(run: Path):
     done = run_here("cell", "sweep", run, *words, "--no-pictures", "--quiet")
     assert done.returncode == 0
     folders = {path.parent.name for path in run.parent.glob("*/sweep.csv")}
-    assert folders == {"run-ks_hat=50", "run-ks_hat=100"}
+    assert folders == {"run-values=20.0-ks_hat=50", "run-values=20.0-ks_hat=100"}
 
 
 def test_branches_prints_its_special_points(run: Path):

@@ -199,7 +199,7 @@ def test_load_that_does_not_converge_ends_with_4_and_is_a_row_all_the_same(
     result = sweep(spec, "--set", "solver.max_iterations=1")
     assert result.returncode == 4
     assert result.stdout == ""
-    rows = read_rows(spec.with_suffix("") / "sweep.csv")
+    rows = read_rows(spec.with_name("run-max_iterations=1") / "sweep.csv")
     assert [row.status.value for row in rows] == 2 * ["iteration_limit"]
 
 

@@ -276,3 +276,14 @@ def test_impossible_loads_are_refused(load: float) -> None:
     with pytest.raises(SpecError) as error:
         planar_film(2, load)
     assert error.value.key == "tension"
+
+
+@pytest.mark.parametrize("lobes", [2, 3, 12])
+def test_a_film_in_line_contact_is_one_shape_of_every_size(lobes):
+    """Its energy grows as the cube root of the tension, at tensions of any size."""
+    first = planar_film(lobes, 1e10)
+    for tension in (1e15, 1e100, 1e250, 1e300, 1e307):
+        film = planar_film(lobes, tension)
+        growth = (tension / 1e10) ** (1 / 3)
+        assert film.energy == pytest.approx(first.energy * growth, rel=1e-12)
+        assert film.area == pytest.approx(film.energy / (3 * tension), rel=1e-14)

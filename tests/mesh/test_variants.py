@@ -177,8 +177,8 @@ def test_quadrangles_of_any_format_are_split_with_a_line(tmp_path, caplog, name)
 
 
 def test_strips_are_triangles(tmp_path, caplog):
-    before, after = "POLYGONS 1 5\n4 0 1 2 3", "TRIANGLE_STRIPS 1 5\n4 0 1 3 2"
-    text = GRIDS["quad.vtk"].replace(before, after)
+    before = "POLYGONS 1 5\n4 0 1 2 3"
+    text = GRIDS["quad.vtk"].replace(before, "TRIANGLE_STRIPS 1 5\n4 0 1 3 2")
     (tmp_path / "strip.vtk").write_text(text)
     found = read_mesh(tmp_path / "strip.vtk")
     assert first_vertex_first(found.triangles) == {(0, 1, 3), (1, 2, 3)}
@@ -186,8 +186,8 @@ def test_strips_are_triangles(tmp_path, caplog):
 
 
 OTHERS = {
-    "solid.vtk": ("# vtk DataFile Version 3.0\nq\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 "
-    f"float\n{SQUARE}CELLS 1 5\n4 0 1 3 2\nCELL_TYPES 1\n10\n", "holds tetrahedra"),
+    "solid.vtk": ("# vtk DataFile Version 3.0\nq\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+    f"POINTS 4 float\n{SQUARE}CELLS 1 5\n4 0 1 3 2\nCELL_TYPES 1\n10\n", "holds tetrahedra"),
     "image.vtk": ("# vtk DataFile Version 3.0\nq\nASCII\nDATASET STRUCTURED_POINTS\n"
     "DIMENSIONS 2 2 1\n", "holds a STRUCTURED_POINTS"),
     "image.vtp": ('<VTKFile type="ImageData"><ImageData/></VTKFile>', "holds a ImageData"),

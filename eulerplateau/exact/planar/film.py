@@ -228,20 +228,30 @@ def _buckled(lobes: int, tension: float) -> PlanarFilm:
     )
 
 
+def _curved_energy(lobes: int, parts: Touching) -> float:
+    lobe, neck = parts.lobe, parts.neck
+    energy = lobe.energy(parts.lobe_length)
+    if neck is not None:
+        inner = neck.half_period - parts.neck_length
+        energy += neck.energy(neck.half_period) - neck.energy(inner)
+    return 2 * lobes * float(energy)
+
+
 def _touching(lobes: int, tension: float, regime: Regime, parts: Touching) -> PlanarFilm:
     """Return the film with the given curved parts and lines between them."""
     lobe, neck = parts.lobe, parts.neck
-    energy = 2 * lobes * lobe.energy(parts.lobe_length)
     lowest = lobe.mean - lobe.amplitude
     if parts.lobe_length < lobe.half_period:
         lowest = float(lobe.curvature(parts.lobe_length))
     if neck is not None:
-        inner = neck.half_period - parts.neck_length
-        energy += 2 * lobes * (neck.energy(neck.half_period) - neck.energy(inner))
         lowest = min(lowest, neck.mean - neck.amplitude)
-    beta, line = lobe.beta, 0.0
+    energy, beta, line = _curved_energy(lobes, parts), lobe.beta, 0.0
     if regime is Regime.LINE_CONTACT:
         beta, line = 0.0, 1 / (2 * lobes) - parts.lobe_length - parts.neck_length
+        # One shape of every size: products of a tiny one's numbers would overflow.
+        alike = at_line_contact(lobes)
+        growth = (tension / alike.lobe.sigma) ** (1 / 3)
+        energy = growth * _curved_energy(lobes, alike)
     return PlanarFilm(
         lobes=lobes,
         tension=tension,

@@ -10,6 +10,7 @@ from .generation import generate as generate
 from .making import mesh_polygon as mesh_polygon
 from .measures import Measurer as Measurer, Measures as Measures, measure as measure
 from .polygon import polygon_area as polygon_area, polygon_gradient as polygon_gradient
+from .readers.shapes import VtpFile as VtpFile, read_vtp as read_vtp
 from .shape import Shape as Shape
 from .spec import ALGORITHMS as ALGORITHMS, MeshSpec as MeshSpec
 from .triangles import (
@@ -18,6 +19,6 @@ from .triangles import (
     smallest_angle as smallest_angle,
     unit as unit,
 )
-from .vtp import VtpFile as VtpFile, read_vtp as read_vtp, write_vtp as write_vtp
+from .vtp import write_vtp as write_vtp
 from .waist import waist_path as waist_path
 from .whole_files import write_whole as write_whole

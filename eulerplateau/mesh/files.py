@@ -9,14 +9,14 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError, SpecError
-from eulerplateau.mesh import formats
 from eulerplateau.mesh.cleaning import split
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.mesh.formats import SOUPS
+from eulerplateau.mesh.formats import SOUPS, reader_of
 from eulerplateau.mesh.generation import generate
 from eulerplateau.mesh.mending import as_disk, counted
 from eulerplateau.mesh.readers import Content, one_line
 from eulerplateau.mesh.spec import MeshSpec
+from eulerplateau.mesh.writing import write_triangles
 from eulerplateau.settings import load_toml
 
 _log = logging.getLogger(__name__)
@@ -72,7 +72,7 @@ def _content(path: Path) -> Content:
         raise OutputError(path, f"cannot be read: {error.strerror}") from None
     if empty:
         raise MeshError("mesh", None, f"{path} is empty")
-    read, _ = formats.format_of(path)
+    read = reader_of(path)
     with one_line(path):
         return read(path)
 
@@ -121,4 +121,4 @@ def write_mesh(mesh: Disk, path: str | Path) -> None:
     .vtp .msh .vtu .vtk .off .ply .obj keep every bit, .stl and .glb single precision.
     Raises MeshError for another extension, OutputError if the file cannot be written.
     """
-    formats.write_triangles(Path(path), mesh.x * mesh.length, mesh.triangles)
+    write_triangles(Path(path), mesh.x * mesh.length, mesh.triangles)

@@ -184,7 +184,7 @@ def test_no_run_starts_if_one_of_the_specifications_is_wrong(
 
 def test_bad_mesh_ends_with_3(spec: Path, tmp_path: Path) -> None:
     (tmp_path / "bow.off").write_text(
-        "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 0 1 3\n"
+        "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 1 4\n"
     )
     assert_fails(sweep(edit(spec, "oval.vtp", "bow.off")), 3, "edge")
     (tmp_path / "torn.vtp").write_bytes((tmp_path / "oval.vtp").read_bytes()[:700])
@@ -215,7 +215,7 @@ def test_output_that_cannot_be_written_ends_with_5(spec: Path, tmp_path: Path) -
 
 def test_one_bad_run_of_many_costs_the_others_nothing(spec: Path, tmp_path: Path) -> None:
     (tmp_path / "bow.off").write_text(
-        "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 0 1 3\n"
+        "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 1 4\n"
     )
     first = tmp_path / "abad.toml"
     first.write_text(spec.read_text().replace("oval.vtp", "bow.off"))
@@ -259,7 +259,9 @@ def test_mesh_command_ends_with_the_code_of_what_went_wrong(tmp_path: Path) -> N
     crossed.write_text("[polygon]\nkind = 'corners'\npoints = [[0,0],[1,1],[1,0],[0,1]]\n")
     assert_fails(run_here("mesh", crossed, "-o", tmp_path / "a.vtp"), 2, "polygon.points")
     bow = tmp_path / "bow.off"
-    bow.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 0 1 3\n")
+    bow.write_text(
+        "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 1 4\n"
+    )
     assert_fails(run_here("mesh", bow, "-o", tmp_path / "a.vtp"), 3, "edge")
     good = tmp_path / "good.off"
     good.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n")

@@ -187,7 +187,7 @@ def test_strips_are_triangles(tmp_path, caplog):
 
 OTHERS = {
     "solid.vtk": ("# vtk DataFile Version 3.0\nq\nASCII\nDATASET UNSTRUCTURED_GRID\n"
-    f"POINTS 4 float\n{SQUARE}CELLS 1 5\n4 0 1 3 2\nCELL_TYPES 1\n10\n", "holds tetrahedra"),
+    f"POINTS 4 float\n{SQUARE}CELLS 1 5\n4 0 1 3 2\nCELL_TYPES 1\n10\n", "tetrahedra"),
     "image.vtk": ("# vtk DataFile Version 3.0\nq\nASCII\nDATASET STRUCTURED_POINTS\n"
     "DIMENSIONS 2 2 1\n", "holds a STRUCTURED_POINTS"),
     "image.vtp": ('<VTKFile type="ImageData"><ImageData/></VTKFile>', "holds a ImageData"),

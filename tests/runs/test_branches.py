@@ -13,9 +13,8 @@ import pytest
 
 from eulerplateau.branches.special import BIFURCATION
 from eulerplateau.errors import OutputError, SpecError
-from eulerplateau.mesh import write_mesh
+from eulerplateau.mesh import read_vtp, write_mesh
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.runs.exploration import SPECIAL_COLUMNS, Exploration, run_branches
 from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.shape_files import read_shape

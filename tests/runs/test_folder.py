@@ -13,8 +13,8 @@ from xml.etree import ElementTree
 import pytest
 
 from eulerplateau.errors import OutputError
+from eulerplateau.mesh import read_vtp
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.shape_files import read_shape
 from eulerplateau.runs.table import read_rows

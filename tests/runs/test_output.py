@@ -15,9 +15,9 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.film.load import SPRING_LOAD
+from eulerplateau.mesh import read_vtp
 from eulerplateau.mesh.curvature import angle_defects, loop_frame
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.shape_files import read_shape, write_series, write_shape
 from eulerplateau.runs.table import COLUMNS, Row, RowWriter, read_rows

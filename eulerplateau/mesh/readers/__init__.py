@@ -1,8 +1,9 @@
 """What reads which mesh file: each reader returns polygons as the file has them, unchecked.
 
 `content` is what they return, and what they raise; `off`, `ply`, `wavefront`, `stl`,
-`legacy_vtk` and `xml_vtk` (`vtk_cells` for both) read the formats of their names, and
-`gmsh_files` has Gmsh read .msh in a child process, which is `__main__`.
+`legacy_vtk` and `xml_vtk` (`vtk_cells` for both) read the formats of their names, `shapes`
+what a run has written, fields included, and `gmsh_files` has Gmsh read .msh in a child
+process, which is `__main__`.
 
 No one library reads these as it should (VTK 9.7, meshio 5.3, trimesh 5.2): VTK rounds .ply
 and .obj to single precision, reads a cut legacy file as a smaller one, and a count that a

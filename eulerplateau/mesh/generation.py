@@ -63,6 +63,9 @@ def _meet_target(
     """Search the edge length whose mesh has `target` vertices within 2 % or one."""
     if target > _MOST_VERTICES:
         raise SpecError("vertices", f"found {target}; should be at most {_MOST_VERTICES}")
+    corners = len(spec.polygon.corners(np.inf))
+    if corners > (1 + _TARGET_TOLERANCE) * target:
+        raise SpecError("vertices", f"found {target}; the polygon alone has {corners}")
     at_loop = _lattice_edge_length(spec, target)
     for _ in range(6 if spec.grading > 1 else 0):
         points, triangles = _triangulate(gmsh, spec, at_loop, at_loop)

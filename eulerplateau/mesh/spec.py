@@ -21,7 +21,7 @@ ALGORITHMS = {
 
 
 # Far more than a loop of a mesh that can be solved has.
-_MOST_SIDES = 100_000
+_MOST_SIDES = 10_000
 
 # Each is compared with each: a file with more corners is the loop of a mesh already.
 _MOST_CORNERS = 2_000

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from eulerplateau.errors import SpecError
+from eulerplateau.mesh import generate
 from eulerplateau.mesh.spec import MeshSpec
 from eulerplateau.runs.plan import planned
 from eulerplateau.runs.spec import RunSpec, load_run
@@ -100,6 +101,12 @@ def test_polygons_that_no_machine_holds_are_refused(key):
         validate({"polygon": HUGE[key]}, MeshSpec, "disk.toml")
     assert caught.value.key == f"polygon.{key}"
     assert len(str(caught.value)) < 300
+
+
+def test_more_corners_than_vertices_are_refused_at_once():
+    polygon = {"kind": "regular", "sides": 9_000}
+    with pytest.raises(SpecError, match="the polygon alone has 9000"):
+        generate(MeshSpec(polygon=polygon, vertices=500))
 
 
 @pytest.mark.parametrize(

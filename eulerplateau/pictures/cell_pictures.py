@@ -36,8 +36,13 @@ _SIZE = 2 * np.pi
 
 
 def _branches(branches: Sequence[Branch]) -> tuple[Panel, ...]:
-    """Return the panels of branches.png; the first branch may go both ways."""
+    """Return the panels of branches.png; the first branch may go both ways.
+
+    Where it is the only one, its energy is shown itself.
+    """
     first = [branch for branch in branches if branch.origin is None]
+    if len(first) == len(branches):
+        return PERIMETER, KAPPA_MID, ENERGY
     excess = energy_above(*first)
     above = Panel(
         r"$(E-E_0)\,R_0/\alpha$", lambda branch: [excess(branch)], solid_only=True

@@ -18,7 +18,7 @@ from eulerplateau.cells import touching_kernels as kernels
 from eulerplateau.loop import Term, edges_of
 
 # A resolved edge that turns back on itself takes six polygon edges to do so.
-_TURNING_BACK = 6
+_TURNING_BACK = 6.0
 # Strands touch that come within one polygon edge of each other. A descent that has come
 # within a little more is at its end.
 _REACH, _AT_THE_END = 1.0, 1.05

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from numba import njit
 
 from eulerplateau.arrays import FloatArray
@@ -36,27 +37,32 @@ def crosses(x: FloatArray) -> bool:
 
 
 @njit(cache=True)
-def near(x: FloatArray, lengths: FloatArray, reach: float, apart: int) -> bool:
-    """Whether a vertex comes within `reach` edges of an edge at least `apart` edges away.
+def near(x: FloatArray, lengths: FloatArray, reach: float, apart: float) -> bool:
+    """Whether a vertex comes within `reach` edges of an edge `apart` edges along the loop.
 
-    Measured in the shorter of the edges there, so that sides with short edges beside ones
-    with long edges are no contact. An edge that begins at the distance d is followed by
-    others out of reach until the loop can have come that far, which are left out.
-    x : (n, 2); lengths : (n,), of edges v -> v + 1.
+    Both are measured in the shorter of the edges there, so that sides with short edges
+    beside ones with long edges are no contact. An edge that begins at the distance d is
+    followed by others out of reach until the loop can have come that far, which are left
+    out. x : (n, 2); lengths : (n,), of edges v -> v + 1.
     """
     n = x.shape[0]
     longest = lengths.max()
+    places = np.cumsum(lengths) - lengths
+    perimeter = lengths.sum()
     for i in range(n):
         own = min(lengths[i], lengths[i - 1])
-        k = apart
-        while k < n - apart:
+        k = 1
+        while k < n - 1:
             j = i + k if i + k < n else i + k - n
             d_x, d_y = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1]
             ahead = (math.sqrt(d_x * d_x + d_y * d_y) - reach * own) / longest
             k += max(1, int(min(ahead, float(n))))
             if ahead > 1.0:
                 continue
-            limit = reach * min(own, lengths[j])
+            shorter = min(own, lengths[j])
+            limit, along = reach * shorter, (places[j] - places[i]) % perimeter
+            if min(along, perimeter - along - lengths[j]) < apart * shorter:
+                continue
             after = j + 1 if j + 1 < n else 0
             e_x, e_y = x[after, 0] - x[j, 0], x[after, 1] - x[j, 1]
             part = (d_x * e_x + d_y * e_y) / (lengths[j] * lengths[j])

@@ -120,7 +120,7 @@ def branches(
     drawn += _drawn(folder, pictures, "branches.png")
     if not quiet:
         for point in result.special:
-            name = run.sweep.parameter
+            name = run.swept.parameter
             click.echo(
                 f"{point['kind']} {point['number']} at {name} = {point[name]:.8g} +- "
                 f"{point['error']:.1g} on branch {point['branch']}, breaks: "

@@ -3,5 +3,9 @@ from .branch_diagram import draw_branches as draw_branches
 from .comparison import check_plot as check_plot, draw_comparison as draw_comparison
 from .of_run import pictures_of as pictures_of
 from .onset import fit_onset as fit_onset
+from .phase_diagram import (
+    PHASE_DIAGRAM as PHASE_DIAGRAM,
+    draw_phase_diagram as draw_phase_diagram,
+)
 from .planar import ENERGY as ENERGY, GALLERY as GALLERY, draw_figures as draw_figures
 from .sweep_diagram import draw_diagram as draw_diagram

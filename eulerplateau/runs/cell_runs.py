@@ -52,14 +52,14 @@ def run_cell_sweep(
     leaves a valid folder and says so in its run.json. Raises SpecError, OutputError.
     """
     started = time.perf_counter()
-    cell = spec.cell.made()
+    cell, pairs = spec.cell.made(), spec.pairs()
     with opened(path, "sweep", CellRow, describe(spec), started) as run:
         limit = spec.max_iterations
-        for found in sweep_cell(cell, spec.pairs(), max_iterations=limit):
-            on_row(_record(run, spec, CellRow, found, {}))
+        for found in sweep_cell(cell, pairs, max_iterations=limit):
+            on_row(record_cell(run, CellRow, spec.swept.parameter, found))
             run.totals |= {
                 "values": len(run.rows),
-                "of": len(spec.pairs()),
+                "of": len(pairs),
                 "not_converged": not_converged(run.rows),
             }
     return CellRun(path, tuple(run.rows), (), run.seconds)
@@ -76,7 +76,7 @@ def run_cell_branches(
     and goes both ways from there.
     """
     started = time.perf_counter()
-    cell, window, varied = spec.cell.made(), spec.window(), spec.sweep.parameter
+    cell, window, varied = spec.cell.made(), spec.window(), spec.swept.parameter
     own = getattr(spec.cell, varied)
     inside = varied in spec.cell.model_fields_set and window[0] < own < window[1]
     start = solve_cell(cell, *spec.pair(own if inside else window[0]))
@@ -94,10 +94,10 @@ def run_cell_branches(
         )
         for point in points:
             mode = {} if point.special is None else {"critical_mode": point.special.mode}
-            row = _record(
+            row = record_cell(
                 run,
-                spec,
                 CellBranchRow,
+                varied,
                 point.equilibrium,
                 mode,
                 branch=point.branch,
@@ -118,17 +118,18 @@ def describe(spec: CellRunSpec) -> dict[str, Any]:
     return {"kind": "cell", "spec": spec.model_dump(mode="json")}
 
 
-def _record(
+def record_cell(
     run: OpenRun[Any],
-    spec: CellRunSpec,
     row_type: type[Any],
+    varied: str,
     found: CellEquilibrium,
-    modes: Mapping[str, FloatArray],
+    modes: Mapping[str, FloatArray] | None = None,
     **columns: Any,
 ) -> Any:
+    """Write a cell's shape and its row, of which `varied` names what is varied."""
     row = row_type(
         step=len(run.rows),
-        quantity=spec.sweep.parameter,
+        quantity=varied,
         **_columns(found),
         **columns,
     )

@@ -99,10 +99,13 @@ class PhaseDiagramSettings(Settings):
     Attributes
     ----------
     sigma_hat, ks_hat : (low, high), both above 0
+    columns : int
+        Lines are located at so many contractilities, and at as many where they begin.
     """
 
     sigma_hat: tuple[float, float] = (1.0, 1000.0)
     ks_hat: tuple[float, float] = (1.0, 1000.0)
+    columns: int = Field(default=40, ge=4)
 
     @model_validator(mode="after")
     def _ranges(self) -> PhaseDiagramSettings:
@@ -115,10 +118,13 @@ class PhaseDiagramSettings(Settings):
 
 
 class CellRunSpec(Settings):
-    """One run of a cell: adhesions, what is swept, and where its diagrams end."""
+    """One run of a cell: adhesions, what is swept, and where its diagrams end.
+
+    `sweep` is for sweeps and branches, which ask for it; a phase diagram has no use for it.
+    """
 
     cell: CellSettings
-    sweep: CellSweepSettings
+    sweep: CellSweepSettings | None = None
     max_iterations: int = Field(default=500, ge=1)
     branches: CellBranchSettings = CellBranchSettings()
     phase_diagram: PhaseDiagramSettings = PhaseDiagramSettings()
@@ -126,23 +132,31 @@ class CellRunSpec(Settings):
 
     @model_validator(mode="after")
     def _something_holds_the_cell(self) -> CellRunSpec:
-        if self.sweep.parameter == "ks_hat" and min(self.sweep.in_order()) <= 0:
+        swept = self.sweep
+        if swept and swept.parameter == "ks_hat" and min(swept.in_order()) <= 0:
             raise SpecError("sweep.values", "of ks_hat should be above 0")
         return self
 
+    @property
+    def swept(self) -> CellSweepSettings:
+        """What is varied; raises SpecError where nothing is."""
+        if self.sweep is None:
+            raise SpecError("sweep.values", "should say what is varied: see runs/cell.toml")
+        return self.sweep
+
     def pairs(self) -> list[tuple[float, float]]:
         """Return (sigma_hat, ks_hat) in the order in which they are swept."""
-        return [self.pair(value) for value in self.sweep.in_order()]
+        return [self.pair(value) for value in self.swept.in_order()]
 
     def pair(self, value: float) -> tuple[float, float]:
         """Return (sigma_hat, ks_hat) at a value of what is varied."""
-        if self.sweep.parameter == "sigma_hat":
+        if self.swept.parameter == "sigma_hat":
             return value, self.cell.ks_hat
         return self.cell.sigma_hat, value
 
     def window(self) -> tuple[float, float]:
         """Return the window of branches; raises SpecError where it is none."""
-        values = [value for value in self.sweep.in_order() if value > 0] or [1.0]
+        values = [value for value in self.swept.in_order() if value > 0] or [1.0]
         low = self.branches.low or min(values)
         high = self.branches.high or max(values)
         if low >= high:

@@ -78,6 +78,12 @@ def test_short_edges_next_to_long_ones_are_no_contact() -> None:
     assert not strands_near(cell.straight_start())
 
 
+def test_a_side_that_has_all_but_gone_is_no_contact() -> None:
+    angle = np.array([0, 2, 2.0001, 4])
+    sites = Sites(np.column_stack([np.cos(angle), np.sin(angle)]), np.ones(4))
+    assert not strands_near(Cell(sites, 24).straight_start())
+
+
 def test_a_step_through_another_strand_is_refused() -> None:
     guard = Apart(np.array([1.0]))
     apart, shrink = waist(0.3), waist(-0.1) - waist(0.3)

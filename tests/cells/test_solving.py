@@ -16,7 +16,7 @@ from eulerplateau.cells import (
 )
 from eulerplateau.errors import SpecError
 from eulerplateau.solvers import Status
-from tests.helpers.polygons import order, turned
+from tests.helpers.polygons import order, turned, uneven as uneven_polygon
 
 POINTS = np.array([[-0.8, -0.7], [1.1, -0.5], [0.7, 0.9], [-0.5, 0.6]])
 WEIGHTS = np.array([1.0, 2.0, 0.7, 1.4])
@@ -165,3 +165,20 @@ def test_what_makes_no_sense_is_refused() -> None:
         solve_cell(cell, 1.0, 1.0, np.column_stack([np.sin(t), np.sin(2 * t)]))
     with pytest.raises(SpecError, match="max_iterations"):
         solve_cell(cell, 1.0, 1.0, max_iterations=0)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_on_any_polygon_a_cell_ends_as_a_minimum_or_says_why_there_is_none(
+    seed: int,
+) -> None:
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(3, 7))
+    sites = Sites(uneven_polygon(n, seed), rng.uniform(0.4, 2.0, n))
+    sigma, ks = 10 ** rng.uniform(-1, 2.5), 10 ** rng.uniform(0, 4)
+    found = solve_cell(Cell(sites, 16), sigma, ks)
+    ends = {Status.CONVERGED, Status.UNRESOLVED, Status.TOUCHING, Status.COLLAPSED}
+    assert found.status in ends
+    assert not crosses_itself(found.x)
+    if found.converged:
+        assert found.n_unstable == 0
+        assert found.residual < 1e-6

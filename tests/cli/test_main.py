@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -14,23 +12,12 @@ import pytest
 from eulerplateau.mesh import read_disk, write_mesh
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.table import COLUMNS, read_rows
+from tests.helpers.command import Shell, command_line, run_here, run_in_shell
 from tests.helpers.processes import PATIENCE, started
-
-Shell = subprocess.CompletedProcess[str]
-
-
-def command(*words: object) -> list[str]:
-    return [sys.executable, "-m", "eulerplateau", *map(str, words)]
-
-
-def run(*words: object, cwd: Path | None = None) -> Shell:
-    return subprocess.run(
-        command(*words), cwd=cwd, capture_output=True, text=True, check=False
-    )
 
 
 def sweep(*words: object, cwd: Path | None = None) -> Shell:
-    return run("sweep", "--no-pictures", "--quiet", *words, cwd=cwd)
+    return run_here("sweep", "--no-pictures", "--quiet", *words, cwd=cwd)
 
 
 @pytest.fixture
@@ -60,7 +47,7 @@ def assert_fails(result: Shell, code: int, *names: str) -> None:
 def test_sweep_ends_with_0_and_writes_its_folder_beside_the_specification(
     spec: Path,
 ) -> None:
-    result = sweep(spec)
+    result = run_in_shell("sweep", "--no-pictures", "--quiet", spec)
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
     folder = spec.with_suffix("")
     assert [row.kL3_alpha for row in read_rows(folder / "sweep.csv")] == [500, 900]
@@ -85,7 +72,7 @@ def test_table_has_the_promised_columns_in_the_promised_order(spec: Path) -> Non
 
 
 def test_without_quiet_it_reports_on_what_it_did(spec: Path) -> None:
-    result = run("sweep", "--no-pictures", spec)
+    result = run_here("sweep", "--no-pictures", spec)
     assert result.returncode == 0
     assert str(spec.with_suffix("")) in result.stdout
     assert "|kappa_n|" in result.stderr  # the progress bar
@@ -94,6 +81,7 @@ def test_without_quiet_it_reports_on_what_it_did(spec: Path) -> None:
 def test_out_names_the_folder_and_the_solver_can_be_chosen(
     spec: Path, tmp_path: Path
 ) -> None:
+    edit(spec, "[500, 900]", "[100]")
     result = sweep(spec, "--out", tmp_path / "deep" / "er", "--solver", "cg")
     assert result.returncode == 0
     row = read_rows(tmp_path / "deep" / "er" / "sweep.csv")[-1]
@@ -167,13 +155,14 @@ def test_bad_specification_ends_with_2_and_a_line_naming_the_key(
 
 
 def test_missing_file_and_bad_arguments_end_with_2(spec: Path, tmp_path: Path) -> None:
-    assert_fails(sweep(tmp_path / "none.toml"), 2, "none.toml")
+    missing = run_in_shell("sweep", "--no-pictures", "--quiet", tmp_path / "none.toml")
+    assert_fails(missing, 2, "none.toml")
     assert_fails(sweep(spec, "--set", "solver.name=simplex"), 2, "solver.name")
     assert_fails(sweep(spec, "--set", "seed=1"), 2, "seed")
     assert_fails(sweep(spec, "--solver", "simplex"), 2, "solver.name")
     for words in ((spec, "--sovler", "cg"), (), (spec, "--set", "solver.name")):
         assert sweep(*words).returncode == 2
-    assert run("swepe").returncode == 2
+    assert run_here("swepe").returncode == 2
 
 
 def test_two_runs_that_would_share_a_folder_end_with_2(spec: Path, tmp_path: Path) -> None:
@@ -237,7 +226,7 @@ def test_one_bad_run_of_many_costs_the_others_nothing(spec: Path, tmp_path: Path
 def test_interrupted_sweep_ends_with_130_and_keeps_its_rows(spec: Path) -> None:
     edit(spec, "[500, 900]", "[{start = 1, stop = 3000, step = 0.1}]")
     table = spec.with_suffix("") / "sweep.csv"
-    with started(command("sweep", "--no-pictures", "--quiet", spec)) as process:
+    with started(command_line("sweep", "--no-pictures", "--quiet", spec)) as process:
         deadline = time.monotonic() + PATIENCE
         while not (table.exists() and table.read_bytes().count(b"\n") > 3):
             assert process.poll() is None
@@ -257,7 +246,7 @@ def test_interrupted_sweep_ends_with_130_and_keeps_its_rows(spec: Path) -> None:
 def test_mesh_command_writes_a_mesh_that_sweep_takes(tmp_path: Path) -> None:
     polygon = tmp_path / "polygon.toml"
     polygon.write_text("vertices = 100\n[polygon]\nkind = 'regular'\nsides = 6\n")
-    result = run("mesh", polygon, "-o", tmp_path / "mesh.vtp", "--quiet")
+    result = run_here("mesh", polygon, "-o", tmp_path / "mesh.vtp", "--quiet")
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
     assert read_disk(tmp_path / "mesh.vtp").n_v == pytest.approx(100, rel=0.02)
     spec = tmp_path / "run.toml"
@@ -268,11 +257,11 @@ def test_mesh_command_writes_a_mesh_that_sweep_takes(tmp_path: Path) -> None:
 def test_mesh_command_ends_with_the_code_of_what_went_wrong(tmp_path: Path) -> None:
     crossed = tmp_path / "crossed.toml"
     crossed.write_text("[polygon]\nkind = 'corners'\npoints = [[0,0],[1,1],[1,0],[0,1]]\n")
-    assert_fails(run("mesh", crossed, "-o", tmp_path / "a.vtp"), 2, "polygon.points")
+    assert_fails(run_here("mesh", crossed, "-o", tmp_path / "a.vtp"), 2, "polygon.points")
     bow = tmp_path / "bow.off"
     bow.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 0 1 3\n")
-    assert_fails(run("mesh", bow, "-o", tmp_path / "a.vtp"), 3, "edge")
+    assert_fails(run_here("mesh", bow, "-o", tmp_path / "a.vtp"), 3, "edge")
     good = tmp_path / "good.off"
     good.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n")
     (tmp_path / "file").write_text("in the way")
-    assert_fails(run("mesh", good, "-o", tmp_path / "file" / "a.vtp"), 5, "file")
+    assert_fails(run_here("mesh", good, "-o", tmp_path / "file" / "a.vtp"), 5, "file")

@@ -5,8 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import math
-import subprocess
-import sys
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from html.parser import HTMLParser
@@ -24,6 +22,7 @@ from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.record import read_run
 from eulerplateau.runs.table import BranchRow, Row, columns
+from tests.helpers.command import run_here
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
 from tests.runs.test_output import ROW
 
@@ -260,19 +259,10 @@ def test_table_of_special_points_that_is_none_is_named(tmp_path: Path, mesh: Dis
     assert collect([run]).exhibits[0].run.special == {}
 
 
-def run_command(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "eulerplateau", "gallery", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-
-
 def test_command_writes_the_page_whole_or_says_why_not(tmp_path: Path, mesh: Disk) -> None:
     run = sweep(tmp_path / "run", mesh, [1.0, 2.0])
     out = tmp_path / "page.html"
-    assert run_command(run, "-o", out).returncode == 0
+    assert run_here("gallery", run, "-o", out).returncode == 0
     content = out.read_bytes()
     assert content == page(collect([run]))
     for arguments, code in (
@@ -282,7 +272,7 @@ def test_command_writes_the_page_whole_or_says_why_not(tmp_path: Path, mesh: Dis
         ((tmp_path, "-o", out), 5),
         ((tmp_path / "nowhere", "-o", out), 5),
     ):
-        ended = run_command(*arguments)
+        ended = run_here("gallery", *arguments)
         assert ended.returncode == code
         assert "Traceback" not in ended.stderr
     assert out.read_bytes() == content

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -24,6 +22,7 @@ from eulerplateau.runs.shape_files import read_shape
 from eulerplateau.runs.spec import RunSpec, load_run
 from eulerplateau.runs.table import BranchRow, read_rows
 from eulerplateau.settings import validate
+from tests.helpers.command import Shell, run_here
 from tests.helpers.shapes import disk_points, mesh_of
 
 RUN = Path(__file__).parents[2] / "runs" / "elongated.toml"
@@ -188,15 +187,9 @@ def test_foreign_folder_is_refused(tmp_path: Path) -> None:
     assert {file.name for file in tmp_path.iterdir()} == {"thesis.tex"}
 
 
-def command(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
+def command(*arguments: str, folder: Path) -> Shell:
     sets = [f"--set={key}={value}" for key, value in WINDOW.items()]
-    sets += ["--out", str(folder)]
-    return subprocess.run(
-        [sys.executable, "-m", "eulerplateau", "branches", str(RUN), *sets, *arguments],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    return run_here("branches", RUN, *sets, "--out", folder, *arguments)
 
 
 def test_quiet_command_draws_and_says_nothing(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from eulerplateau.mesh.formats import write_vtp
 from eulerplateau.runs.table import BranchRow, read_rows
-from tests.cli.test_main import Shell, run
+from tests.helpers.command import Shell, run_here
 from tests.helpers.extremes import cases, oval
 
 COARSE = '[mesh]\nfile = "film.vtp"\n[sweep]\nloads = [{loads}]\n'
@@ -25,7 +25,7 @@ def folder(tmp_path: Path) -> Path:
 def called(folder: Path, command: str, loads: str, *words: str) -> Shell:
     spec = folder / "run.toml"
     spec.write_text(COARSE.format(loads=loads))
-    return run(command, "--quiet", spec, "--out", folder / "out", *words)
+    return run_here(command, "--quiet", spec, "--out", folder / "out", *words)
 
 
 @pytest.mark.parametrize("solver", cases.SOLVERS)

@@ -6,7 +6,10 @@ section "Numerical simulations of the soap film shapes".
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import groupby, pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -30,15 +33,17 @@ def states(rows: tuple[Row, ...]) -> list[tuple[str, float, float]]:
     return [(name, part[0].kL3_alpha, part[-1].kL3_alpha) for name, part in runs]
 
 
-def sweep(name: str, folder) -> tuple[Row, ...]:
-    result = run_sweep(load_run(ROOT / "runs" / name, {}), folder / "run")
+@cache
+def sweep(name: str) -> tuple[Row, ...]:
+    with TemporaryDirectory() as folder:
+        result = run_sweep(load_run(ROOT / "runs" / name, {}), Path(folder) / "run")
     assert result.failures == []
     assert all(row.n_unstable == 0 for row in result.rows)
     return result.rows
 
 
-def test_elongated_film_goes_from_disk_to_saddle_eight_and_bent_lobes(tmp_path):
-    rows = sweep("elongated.toml", tmp_path)
+def test_elongated_film_goes_from_disk_to_saddle_eight_and_bent_lobes():
+    rows = sweep("elongated.toml")
     disk, saddle, eight, bent = states(rows)
     assert [s[0] for s in (disk, saddle, eight, bent)] == [
         *("disk", "in space", "eight", "in space")
@@ -52,17 +57,17 @@ def test_elongated_film_goes_from_disk_to_saddle_eight_and_bent_lobes(tmp_path):
         assert after < (1 + limit) * paper
 
 
-def test_disk_becomes_an_ellipse_gradually(tmp_path):
-    rows = [row for row in sweep("elongated.toml", tmp_path) if row.kL3_alpha <= 650]
+def test_disk_becomes_an_ellipse_gradually():
+    rows = [row for row in sweep("elongated.toml") if row.kL3_alpha <= 650]
     aspects = [row.aspect for row in rows]
     assert aspects[0] == pytest.approx(1.0, abs=0.01)
     assert all(a > b for a, b in pairwise(aspects))
     assert aspects[-1] < 0.5
 
 
-def test_hexagon_becomes_a_saddle_with_two_equal_axes(tmp_path):
+def test_hexagon_becomes_a_saddle_with_two_equal_axes():
     """Enneper's saddle: in space, no twist of two lobes, aspect near 1 at first."""
-    rows = sweep("hexagon.toml", tmp_path)
+    rows = sweep("hexagon.toml")
     disk, saddle = states(rows)[:2]
     assert (disk[0], saddle[0]) == ("disk", "in space")
     assert disk[2] > 855 * 0.985

@@ -6,6 +6,7 @@ the fold of its own symmetric shapes, and then earlier on a stiffer substrate to
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,8 +16,8 @@ from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell.transitions import Stretch, Transition, stable_stretch
 from eulerplateau.exact.checks import finite, whole_number
 
-# Shapes along the curve between which a wave is looked for that becomes unstable.
-_BRACKETS = 12
+# Shapes along the curve between which an eigenvalue changes its sign at most once.
+_BRACKETS = 16
 
 
 @dataclass(frozen=True)
@@ -26,39 +27,39 @@ class SymmetryBreaking(Transition):
     Attributes
     ----------
     q : int, from 1 to N / 2; two modes at once unless it is N / 2
+    lost : bool, whether the wave is unstable on a substrate a little stiffer, or stable
     """
 
     q: int
+    lost: bool
 
 
-def symmetry_breaking(adhesions: int, sigma_hat: float) -> SymmetryBreaking | None:
-    """Return where the stable cell first loses its symmetry as the substrate stiffens.
+def symmetry_breaking(adhesions: int, sigma_hat: float) -> tuple[SymmetryBreaking, ...]:
+    """Return where waves lose and regain their stability as the substrate stiffens.
 
-    None if it does not before the fold, or on no substrate. Raises SpecError up to
-    sigma_hat = 1, where cells do not pull.
+    From next to nothing up to the fold, or where there is none up to a rigid substrate; the
+    softest comes first. Raises SpecError up to sigma_hat = 1, where cells do not pull.
     """
     n = whole_number("adhesions", adhesions, 2)
     sigma = finite("sigma_hat", sigma_hat)
     if sigma <= 1.0:
         raise SpecError("sigma_hat", f"found {sigma:g}; should be above 1: cells pull")
     stretch = stable_stretch(n, sigma)
-    found = [point for q in range(1, n // 2 + 1) if (point := _lost(stretch, q))]
-    return min(found, key=lambda point: point.ks_hat, default=None)
+    found = [point for q in range(1, n // 2 + 1) for point in _crossings(stretch, q)]
+    return tuple(sorted(found, key=lambda point: point.ks_hat))
 
 
-def _lost(stretch: Stretch, q: int) -> SymmetryBreaking | None:
-    """Return where a wave first becomes unstable along a stretch of shapes."""
+def _crossings(stretch: Stretch, q: int) -> Iterator[SymmetryBreaking]:
+    """Yield where a wave's lowest eigenvalue changes its sign along a stretch."""
 
     def lowest(c: float) -> float:
         return stretch.at(c).cell.waves.lowest(q)
 
     # Next to the circle k_s is next to nothing, and the wave stable.
     places = np.linspace(stretch.round, stretch.end, _BRACKETS + 1)[1:]
-    before = places[0]
-    for after in places[1:]:
-        if lowest(after) < 0:
-            c = float(brentq(lowest, after, before, xtol=1e-14, rtol=1e-14))
-            point = stretch.at(c)
-            return SymmetryBreaking(point.sigma_hat, point.ks_hat, point.cell, q)
-        before = after
-    return None
+    stable = np.array([lowest(place) >= 0 for place in places])
+    for place in np.flatnonzero(stable[1:] != stable[:-1]):
+        ends = places[place + 1], places[place]
+        point = stretch.at(float(brentq(lowest, *ends, xtol=1e-14, rtol=1e-14)))
+        lost = bool(stable[place])
+        yield SymmetryBreaking(point.sigma_hat, point.ks_hat, point.cell, q, lost)

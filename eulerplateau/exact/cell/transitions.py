@@ -237,8 +237,8 @@ def _transition(shape: Tethered, y: float) -> Transition:
     rigid = y == shape.radius
     k = np.inf if rigid else shape.stiffness(y) * y**3
     side = HalfSide(shape.side.adhesions, np.append(shape.side.z[:-1], shape.side.h / y))
-    cell = RegularCell(side, y**3, float(k), 0.0, CellStatus.CONVERGED)
-    return Transition(y**3, float(k), cell)
+    cell = RegularCell(side, float(y**3), float(k), 0.0, CellStatus.CONVERGED)
+    return Transition(float(y**3), float(k), cell)
 
 
 def _positive(name: str, value: float) -> float:

@@ -29,7 +29,7 @@ from eulerplateau.exact.cell import (
     symmetry_breaking,
 )
 from eulerplateau.mesh import write_whole
-from eulerplateau.runs.cell_runs import describe, record_cell
+from eulerplateau.runs.cell_recording import describe, record_cell
 from eulerplateau.runs.cell_spec import CellRunSpec, PhaseDiagramSettings
 from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.recording import opened

@@ -43,7 +43,7 @@ _PLOTS: dict[str, tuple[Panel, ...]] = {
     "curvature": (panel(MINUS_K, lambda row: -row.total_gauss_curvature),),
     "eigenvalue": (
         panel(
-            r"smallest eigenvalue $\lambda_1 L^3/\alpha$",
+            r"smallest eigenvalue $\lambda_1 L^4/\alpha$",
             lambda row: row.lowest_eigenvalue,
             logarithmic=True,
         ),

@@ -10,11 +10,8 @@ from .examples import write_examples as write_examples
 from .exploration import Exploration as Exploration, run_branches as run_branches
 from .folder import shape_name as shape_name
 from .kinds import Kind as Kind
-from .phase_diagram import (
-    REGIONS as REGIONS,
-    PhaseDiagram as PhaseDiagram,
-    run_phase_diagram as run_phase_diagram,
-)
+from .phase_diagram import run_phase_diagram as run_phase_diagram
+from .phases import REGIONS as REGIONS, PhaseDiagram as PhaseDiagram
 from .plan import load_with as load_with, planned as planned
 from .record import Run as Run, read_run as read_run, read_runs as read_runs
 from .running import run as run

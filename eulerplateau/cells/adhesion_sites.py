@@ -51,8 +51,9 @@ def regular_sites(n: int) -> Sites:
 def read_sites(path: str | Path) -> Sites:
     """Return the sites of a CSV file: x, y and, if wanted, relative stiffness a line.
 
-    The first line may name the columns, and a # starts a comment. Points that run clockwise are reversed. Raises
-    SpecError, which says which line is wrong and what would be right.
+    The first line may name the columns, and a # starts a comment. Points that run
+    clockwise are reversed. Raises SpecError, which says which line is wrong and what would
+    be right.
     """
     rows = _numbers(Path(path), _lines(Path(path)))
     points = np.array([row[:2] for _, row in rows])

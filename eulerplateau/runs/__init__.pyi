@@ -1,5 +1,6 @@
 from .cell_runs import (
     CellRun as CellRun,
+    cell_conflict as cell_conflict,
     run_cell_branches as run_cell_branches,
     run_cell_sweep as run_cell_sweep,
 )
@@ -35,5 +36,9 @@ from .states import (
     is_planar as is_planar,
     planar_stretches as planar_stretches,
 )
-from .sweep import RunResult as RunResult, run_sweep as run_sweep
+from .sweep import (
+    RunResult as RunResult,
+    conflict as conflict,
+    run_sweep as run_sweep,
+)
 from .table import COLUMNS as COLUMNS, BranchRow as BranchRow, Row as Row

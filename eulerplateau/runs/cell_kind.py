@@ -7,7 +7,7 @@ from typing import Any
 
 from eulerplateau.runs.cell_table import CELL_PARAMETERS, CellBranchRow, CellRow
 from eulerplateau.runs.kinds import Kind
-from eulerplateau.runs.table import LoadName
+from eulerplateau.runs.protocols import LoadName
 
 
 def _parameter(about: Mapping[str, Any]) -> LoadName:

@@ -8,16 +8,23 @@ later by others, diagram.png and pictures/shape_0000.png and so on.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from numpy.typing import NDArray
+
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh import Disk, write_whole
+from eulerplateau.mesh import Disk, sync, write_whole
+from eulerplateau.runs.protocols import LoadName, Record
 from eulerplateau.runs.shape_files import write_series, write_shape
-from eulerplateau.runs.table import Record, Row, RowWriter
+from eulerplateau.runs.table import Row, RowWriter
+
+# At most so much of the work is lost with the power.
+_SECOND = 1.0
 
 # In run.json: without it a folder is not ours, and nothing in it is ever removed.
 _MARK = {"program": "eulerplateau"}
@@ -49,11 +56,16 @@ class RunFolder:
     leaves nothing half done, and a row in sweep.csv means its shape is there.
     """
 
-    def __init__(self, path: Path, name: str, row_type: type[Any]) -> None:
+    def __init__(
+        self, path: Path, name: str, row_type: type[Any], kept: Sequence[Record] = ()
+    ) -> None:
+        """Open a folder that `create` has made, or one whose first rows are kept."""
         self.path = path
-        self._shapes: list[tuple[int, float, str]] = []
+        self._shapes = [(row.step, row.load, shape_name(row.step)) for row in kept]
+        self._load: LoadName | None = None
         self._series = path / f"{name}.pvd"
-        self._rows = RowWriter(path / f"{name}.csv", row_type)
+        self._rows = RowWriter(path / f"{name}.csv", row_type, len(kept))
+        self._synced = self._listed = self._list_shapes_seconds = 0.0
 
     @classmethod
     def create(
@@ -70,7 +82,7 @@ class RunFolder:
         raises OutputError.
         """
         try:
-            if path.exists() and any(path.iterdir()):
+            if path.exists() and any(file.name != ".writer" for file in path.iterdir()):
                 _remove_run(path)
             (path / "shapes").mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -86,13 +98,14 @@ class RunFolder:
         x: FloatArray,
         modes: Mapping[str, FloatArray] | None = None,
         rest_mesh: str | None = None,
+        state: Mapping[str, NDArray[Any]] | None = None,
     ) -> None:
         """Add a film's shape `x` (n_v, 3), with its critical `modes`, and then its row.
 
-        `rest_mesh` is the SHA-256 of the mesh at rest, by default that of `mesh`. Raises
-        what `add` raises.
+        `rest_mesh` is the SHA-256 of the mesh at rest, by default that of `mesh`, `state`
+        what the solver needs to go on from here. Raises what `add` raises.
         """
-        self.add(row, lambda path: write_shape(path, mesh, x, row, modes, rest_mesh))
+        self.add(row, lambda path: write_shape(path, mesh, x, row, modes, rest_mesh, state))
 
     def add(self, row: Record, write: Callable[[Path], None]) -> None:
         """Add a shape, which `write` writes to the file it is given, and then its row.
@@ -103,16 +116,35 @@ class RunFolder:
         name = shape_name(row.step)
         write(self.path / name)
         self._shapes.append((row.step, row.load, name))
-        write_series(self._series, self._shapes, row.load_name)
+        self._load = row.load_name
         self._rows.append(row)
+        now = time.monotonic()
+        if now - self._synced >= _SECOND:
+            # A shape is synced before the row that promises it.
+            sync(self.path / name)
+            self._rows.sync()
+            self._synced = now
+        # The list of all shapes is as long as the run: to write it costs ever more.
+        if now - self._listed >= _SECOND + 20 * self._list_shapes_seconds:
+            self._list_shapes()
 
     def write_summary(self, summary: Mapping[str, object]) -> None:
         """Replace run.json by `summary`: plain data, all floats finite."""
         _write_summary(self.path, summary)
 
+    def _list_shapes(self) -> None:
+        """Write the series of all shapes so far."""
+        began = time.monotonic()
+        if self._load is not None:
+            write_series(self._series, self._shapes, self._load)
+        self._listed = time.monotonic()
+        self._list_shapes_seconds = self._listed - began
+
     def close(self) -> None:
-        """Close sweep.csv; everything is already on disk."""
+        """Close the table, and list all shapes; everything else is already on disk."""
+        self._rows.sync()
         self._rows.close()
+        self._list_shapes()
 
     def __enter__(self) -> RunFolder:
         return self

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eulerplateau.film import FILM_LOADS, SPRING_LOAD
-from eulerplateau.runs.table import BranchRow, LoadName, Row
+from eulerplateau.runs.protocols import LoadName
+from eulerplateau.runs.table import BranchRow, Row
 
 
 @dataclass(frozen=True)

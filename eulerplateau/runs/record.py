@@ -14,16 +14,11 @@ from eulerplateau.errors import MissingLibraryError, OutputError
 from eulerplateau.film import SPRING_LOAD
 from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.kinds import FILM, Kind
+from eulerplateau.runs.protocols import LoadName, Record
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
 from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
 from eulerplateau.runs.states import between_planar, distinct_steps, stable_states
-from eulerplateau.runs.table import (
-    LoadName,
-    Record,
-    Row,
-    columns,
-    read_rows,
-)
+from eulerplateau.runs.table import Row, columns, read_rows
 
 
 @dataclass(frozen=True, repr=False)

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.runs.protocols import BranchRecord, Record
 from eulerplateau.runs.states import is_planar
-from eulerplateau.runs.table import BranchRecord, Record, Row
+from eulerplateau.runs.table import Row
 
 # Of a row, whatever the run follows: a film or a cell.
 Quantity = Callable[[Any], float | None]

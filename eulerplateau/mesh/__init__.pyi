@@ -6,6 +6,7 @@ from .files import (
     write_mesh as write_mesh,
 )
 from .filling import fill_polygon as fill_polygon
+from .formats import write_vtp as write_vtp
 from .generation import generate as generate
 from .making import mesh_polygon as mesh_polygon
 from .measures import Measurer as Measurer, Measures as Measures, measure as measure
@@ -18,6 +19,6 @@ from .triangles import (
     smallest_angle as smallest_angle,
     unit as unit,
 )
-from .vtp import VtpFile as VtpFile, read_vtp as read_vtp, write_vtp as write_vtp
+from .vtp import VtpFile as VtpFile, read_vtp as read_vtp
 from .waist import waist_path as waist_path
 from .whole_files import sync as sync, write_whole as write_whole

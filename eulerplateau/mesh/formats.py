@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError
-from eulerplateau.mesh.vtp import read_vtp, vtp_content
-from eulerplateau.mesh.whole_files import whole_file
+from eulerplateau.mesh.vtp import Fields, read_vtp, vtp_content
+from eulerplateau.mesh.whole_files import whole_file, write_whole
 
 _log = logging.getLogger(__name__)
 
@@ -42,6 +42,22 @@ def read_polygons(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:
 def write_polygons(path: Path, points: FloatArray, triangles: IntArray) -> None:
     """Write VTK's XML polygons, compressed."""
     path.write_bytes(vtp_content(points, triangles))
+
+
+def write_vtp(
+    path: Path,
+    x: FloatArray,
+    triangles: IntArray,
+    *,
+    loop: IntArray | None = None,
+    point_fields: Fields | None = None,
+    field_data: Fields | None = None,
+) -> None:
+    """Write a surface and its fields, as `vtp_content` says; whole or not at all.
+
+    Raises OutputError if the file cannot be written.
+    """
+    write_whole(path, vtp_content(x, triangles, loop, point_fields, field_data))
 
 
 def read_meshio(path: Path) -> tuple[NDArray[Any], NDArray[Any]]:

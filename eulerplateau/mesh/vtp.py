@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError
-from eulerplateau.mesh.whole_files import write_whole
 
 Fields = Mapping[str, NDArray[Any]]
 
@@ -38,31 +37,6 @@ class VtpFile:
     field_data: Fields
 
 
-def write_vtp(
-    path: Path,
-    x: FloatArray,
-    triangles: IntArray,
-    *,
-    loop: IntArray | None = None,
-    point_fields: Fields | None = None,
-    field_data: Fields | None = None,
-) -> None:
-    """Write a surface to `path`, every bit of it, compressed; whole or not at all.
-
-    Raises OutputError if the file cannot be written.
-
-    Parameters
-    ----------
-    path : Path
-    x : (n_v, 3) float
-    triangles : (n_t, 3) int
-    loop : (n_b,) int, cyclic; written as one closed line, which is then cell 0
-    point_fields : by name, (n_v,) or (n_v, k)
-    field_data : by name, (n,) or (n, k)
-    """
-    write_whole(path, vtp_content(x, triangles, loop, point_fields, field_data))
-
-
 def vtp_content(
     x: FloatArray,
     triangles: IntArray,
@@ -70,7 +44,16 @@ def vtp_content(
     point_fields: Fields | None = None,
     field_data: Fields | None = None,
 ) -> bytes:
-    """Return what `write_vtp` writes."""
+    """Return the content of a .vtp file of a surface, every bit of it, compressed.
+
+    Parameters
+    ----------
+    x : (n_v, 3) float
+    triangles : (n_t, 3) int
+    loop : (n_b,) int, cyclic; written as one closed line, which is then cell 0
+    point_fields : by name, (n_v,) or (n_v, k)
+    field_data : by name, (n,) or (n, k)
+    """
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkPolyData
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter

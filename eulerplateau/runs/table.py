@@ -58,6 +58,11 @@ class Row:
         return float(getattr(self, self.quantity))
 
     @property
+    def load_energy(self) -> float:
+        """The part of the energy that is proportional to the load."""
+        return self.film_energy
+
+    @property
     def load_name(self) -> Load:
         """What this load is called."""
         return LOADS[self.quantity]

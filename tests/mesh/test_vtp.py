@@ -10,7 +10,8 @@ import pytest
 
 from eulerplateau.errors import MeshError, OutputError
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.mesh.vtp import read_vtp, write_vtp
+from eulerplateau.mesh.formats import write_vtp
+from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.mesh.whole_files import whole_file
 from tests.helpers.shapes import disk_points, mesh_of
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from eulerplateau.mesh.vtp import write_vtp
+from eulerplateau.mesh.formats import write_vtp
 from eulerplateau.runs.table import BranchRow, read_rows
 from tests.helpers.command import Shell, run_here
 from tests.helpers.extremes import cases, oval

@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TextIO, TypeVar
 
 from eulerplateau.errors import ConflictError, OutputError
-from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.folder import WRITER, check_is_run, shape_name
 from eulerplateau.runs.protocols import Record
 from eulerplateau.runs.shape_files import is_whole_shape
 from eulerplateau.runs.table import read_rows
@@ -140,22 +140,40 @@ def _whole_rows(path: Path, table: Path, row_type: type[T], quantity: str) -> li
 def only_writer(path: Path) -> Iterator[None]:
     """Hold a run folder, so that no other process writes to it; ConflictError if one does.
 
-    The lock is the process's: however that ends, it is gone.
+    The lock is the process's: however that ends, it is gone. Raises OutputError for a
+    folder that holds something else than a run, and leaves it alone.
     """
     try:
+        if path.exists() and any(path.iterdir()):
+            check_is_run(path)
         path.mkdir(parents=True, exist_ok=True)
-        file = (path / ".writer").open("a+", encoding="ascii")
+        file = _locked(path / WRITER)
     except OSError as error:
         problem = f"cannot be made a run folder: {error.strerror}"
         raise OutputError(path, problem) from None
     with file:
+        file.truncate(0)
+        file.write(f"process {os.getpid()} on {os.uname().nodename}\n")
+        file.flush()
+        try:
+            yield
+        finally:
+            (path / WRITER).unlink(missing_ok=True)
+
+
+def _locked(path: Path) -> TextIO:
+    """Return the file that says who writes, locked; ConflictError if another has it."""
+    while True:
+        file = path.open("a+", encoding="ascii")
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             file.seek(0)
             who = file.read().strip() or "another process"
-            raise ConflictError(path, [], writer=who) from None
-        file.truncate(0)
-        file.write(f"process {os.getpid()} on {os.uname().nodename}\n")
-        file.flush()
-        yield
+            file.close()
+            raise ConflictError(path.parent, [], who) from None
+        # The one who had it before may have removed it in the meantime.
+        with suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(file.fileno()), path.stat()):
+                return file
+        file.close()

@@ -25,9 +25,12 @@ from eulerplateau.runs.table import Row, RowWriter
 
 # At most so much of the work is lost with the power.
 _SECOND = 1.0
+# So many shapes are listed in next to no time.
+_FEW = 200
 
 # In run.json: without it a folder is not ours, and nothing in it is ever removed.
 _MARK = {"program": "eulerplateau"}
+WRITER = ".writer"
 _OUR_FILES = (
     "sweep.csv",
     "sweep.pvd",
@@ -82,7 +85,7 @@ class RunFolder:
         raises OutputError.
         """
         try:
-            if path.exists() and any(file.name != ".writer" for file in path.iterdir()):
+            if path.exists() and any(file.name != WRITER for file in path.iterdir()):
                 _remove_run(path)
             (path / "shapes").mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -125,7 +128,8 @@ class RunFolder:
             self._rows.sync()
             self._synced = now
         # The list of all shapes is as long as the run: to write it costs ever more.
-        if now - self._listed >= _SECOND + 20 * self._list_shapes_seconds:
+        spent = self._list_shapes_seconds
+        if len(self._shapes) <= _FEW or now - self._listed >= 20 * spent:
             self._list_shapes()
 
     def write_summary(self, summary: Mapping[str, object]) -> None:
@@ -163,10 +167,16 @@ def _write_summary(path: Path, summary: Mapping[str, object]) -> None:
     write_whole(path / "run.json", f"{text}\n".encode())
 
 
-def _remove_run(path: Path) -> None:
-    if not _is_run(path):
+def check_is_run(path: Path) -> None:
+    """Raise OutputError for a folder with files that is no run."""
+    files = [file for file in path.iterdir() if file.name != WRITER]
+    if files and not _is_run(path):
         problem = "holds something else than a run: name an empty or a new folder"
         raise OutputError(path, problem)
+
+
+def _remove_run(path: Path) -> None:
+    check_is_run(path)
     for pattern in _OUR_FILES:
         for file in path.glob(pattern):
             file.unlink()

@@ -21,4 +21,4 @@ from .triangles import (
 )
 from .vtp import VtpFile as VtpFile, read_vtp as read_vtp
 from .waist import waist_path as waist_path
-from .whole_files import write_whole as write_whole
+from .whole_files import sync as sync, write_whole as write_whole

@@ -1,6 +1,7 @@
 from .cell_kind import cell_state as cell_state
 from .cell_runs import (
     CellRun as CellRun,
+    cell_conflict as cell_conflict,
     run_cell_branches as run_cell_branches,
     run_cell_sweep as run_cell_sweep,
 )
@@ -29,5 +30,9 @@ from .shape_files import (
 )
 from .spec import RunSpec as RunSpec, load_run as load_run
 from .states import distinct_steps as distinct_steps, is_planar as is_planar
-from .sweep import RunResult as RunResult, run_sweep as run_sweep
+from .sweep import (
+    RunResult as RunResult,
+    conflict as conflict,
+    run_sweep as run_sweep,
+)
 from .table import COLUMNS as COLUMNS, BranchRow as BranchRow, Row as Row

@@ -7,8 +7,8 @@ from typing import Any
 
 from eulerplateau.runs.cell_table import CELL_PARAMETERS, CellBranchRow, CellRow
 from eulerplateau.runs.kinds import Kind
+from eulerplateau.runs.protocols import LoadName
 from eulerplateau.runs.states import States
-from eulerplateau.runs.table import LoadName
 from eulerplateau.solvers import Status
 
 CONVEX, INFLECTED, TOUCHING = "convex", "inflected", "touching itself"

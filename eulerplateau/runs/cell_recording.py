@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from hashlib import sha256
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,13 @@ from eulerplateau.runs.recording import OpenRun
 
 def describe(spec: CellRunSpec) -> dict[str, Any]:
     """Return what run.json says before anything is computed."""
-    return {"kind": "cell", "spec": spec.model_dump(mode="json")}
+    sites = spec.cell.sites()
+    places = sha256(sites.points.tobytes() + sites.weights.tobytes()).hexdigest()
+    return {
+        "kind": "cell",
+        "spec": spec.model_dump(mode="json"),
+        "mesh": {"sha256": places},
+    }
 
 
 def record_cell(

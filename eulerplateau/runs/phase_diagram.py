@@ -31,7 +31,7 @@ from eulerplateau.runs.cell_recording import describe, record_cell
 from eulerplateau.runs.cell_spec import CellRunSpec, PhaseDiagramSettings
 from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.phases import REGIONS, Line, PhaseDiagram
-from eulerplateau.runs.recording import opened
+from eulerplateau.runs.recording import Opening, opened
 from eulerplateau.solvers import one_thread
 
 # Points of the fold, and how often a line's beginning is halved.
@@ -59,7 +59,8 @@ def run_phase_diagram(
     points = {name: [p for p in found if p] for name, found in located.items()}
     lines = {name: _line(name, found) for name, found in points.items()}
     special = _special(n)
-    with opened(path, "sweep", CellRow, describe(spec), started) as run:
+    opening = Opening("sweep", CellRow, "sigma_hat", overwrite=True)
+    with opened(path, opening, describe(spec), started) as run:
         write_whole(path / "lines.csv", _table(points))
         write_whole(path / "points.csv", _special_table(n, special))
         diagram = PhaseDiagram(

@@ -168,8 +168,8 @@ def test_interrupt_leaves_what_was_found(tmp_path: Path, last: int) -> None:
     for row in seen:
         read_shape(folder / shape_name(row.step))
     assert json.loads((folder / "run.json").read_text())["status"] == "interrupted"
-    # The next run takes the folder over.
-    again = run_branches(window(special_points=0), folder)
+    # Another run takes the folder over if that is said.
+    again = run_branches(window(special_points=0), folder, overwrite=True)
     assert tuple(read_rows(folder / "branches.csv", BranchRow)) == again.rows
 
 

@@ -9,14 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell.transitions import Stretch, Transition, stable_stretch
 from eulerplateau.exact.checks import finite, whole_number
 
-# Shapes along the curve between which a wave is looked for that becomes unstable.
-_BRACKETS = 6
+# Shapes along the curve between which a wave is looked for that becomes unstable. With
+# many adhesions it may do so for a small part of the curve only.
+_BRACKETS = 16
 
 
 @dataclass(frozen=True)
@@ -54,11 +55,20 @@ def _lost(stretch: Stretch, q: int) -> SymmetryBreaking | None:
 
     # Next to the circle k_s is next to nothing, and the wave stable.
     places = np.linspace(stretch.round, stretch.end, _BRACKETS + 1)[1:]
-    before = places[0]
-    for after in places[1:]:
-        if lowest(after) < 0:
-            c = float(brentq(lowest, after, before, xtol=1e-14, rtol=1e-14))
-            point = stretch.at(c)
-            return SymmetryBreaking(point.sigma_hat, point.ks_hat, point.cell, q)
-        before = after
+    values = [lowest(float(c)) for c in places]
+    for i in range(1, len(places)):
+        unstable = float(places[i])
+        if values[i] >= 0:
+            # On a stiffer substrate still it may be stable again: what lies between?
+            if i + 1 == len(places) or values[i] > min(values[i - 1], values[i + 1]):
+                continue
+            bounds = (float(places[i + 1]), float(places[i - 1]))
+            dip = minimize_scalar(lowest, bounds=bounds, method="bounded")
+            unstable = float(dip.x)
+            if dip.fun >= 0:
+                continue
+        before = float(places[i - 1])
+        c = float(brentq(lowest, unstable, before, xtol=1e-14, rtol=1e-14))
+        point = stretch.at(c)
+        return SymmetryBreaking(point.sigma_hat, point.ks_hat, point.cell, q)
     return None

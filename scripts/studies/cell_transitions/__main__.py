@@ -55,6 +55,9 @@ CHECKS = (
     Check(6, 200.0, "bifurcation"),
     Check(6, 400.0, "bifurcation"),
 )
+# Cells that a stiffer substrate makes stable again, and the stiffnesses to see it at.
+RESTORED = ((6, 140.0), (12, 381.0))
+RISING = (40.0, 50.0, 80.0, 90.0, 125.0, 135.0, 150.0, 200.0, 1000.0)
 
 
 @click.command()
@@ -65,6 +68,7 @@ def main() -> None:
     click.echo(lost_symmetry())
     click.echo(loads())
     click.echo(checks())
+    click.echo(stable_again())
 
 
 def symmetric_shapes() -> str:
@@ -169,6 +173,15 @@ def checks() -> str:
         what = "fold" if lost is None else f"wave {lost.q}"
         cells = [*values, extrapolated(EDGES[:2], values), exact.ks_hat]
         rows.append([str(n), f"{sigma:g}", what, *(f"{k:.7g}" for k in cells)])
+    return markdown_table(rows, words=0)
+
+
+def stable_again() -> str:
+    """Return the table of Morse indices over stiffness where these rise and fall."""
+    rows = [["N", "σ̂", *(f"k̂ = {k:g}" for k in RISING)]]  # noqa: RUF001
+    for n, sigma in RESTORED:
+        indices = [str(regular_cell(n, sigma, k).n_unstable) for k in RISING]
+        rows.append([str(n), f"{sigma:g}", *indices])
     return markdown_table(rows, words=0)
 
 

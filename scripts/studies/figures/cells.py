@@ -150,7 +150,7 @@ def _over_stiffness(ax: Axes) -> None:
 
 
 def _over_load(ax: Axes) -> None:
-    loads = np.geomspace(0.1, 300, 61)
+    loads = np.geomspace(0.1, 300, 41)
     for k, colour in zip((10.0, 30.0, 60.0), COLOURS, strict=True):
         exact = [regular_cell(3, float(load), k).traction for load in loads]
         ax.plot(loads, exact, color=colour, label=rf"$\hat k_s={k:g}$")
@@ -167,7 +167,7 @@ def _quartic(load: float, k: float) -> float:
 def _branches(ax: Axes) -> None:
     for k, colour in ((100.0, BLUE), (120.0, VERMILION)):
         low, high = (fold.sigma_hat for fold in folds(3, k))
-        near = np.linspace(0, 1, 30) ** 2
+        near = np.linspace(0, 1, 15) ** 2
         below = low - (low - 2) * near[::-1]
         above = high + (500 - high) * near
         below[-1], above[0] = low * (1 - 1e-9), high * (1 + 1e-9)
@@ -203,7 +203,7 @@ def _star_perimeter(load: float) -> float:
 
 
 def _lines(ax: Axes) -> None:
-    loads = np.geomspace(5, 1000, 60)
+    loads = np.geomspace(5, 1000, 36)
     flat = [inflection_stiffness(3, float(load)) for load in loads]
     straight = [np.nan if point is None else point.ks_hat for point in flat]
     ax.plot(
@@ -212,7 +212,7 @@ def _lines(ax: Axes) -> None:
     lost = [symmetry_breaking(3, float(load)) for load in loads]
     stiff = [np.nan if point is None else point.ks_hat for point in lost]
     ax.plot(stiff, loads, color=ORANGE, label="symmetry lost")
-    folded = fold_line(3, 160)
+    folded = fold_line(3, 80)
     ax.plot(
         [p.ks_hat for p in folded],
         [p.sigma_hat for p in folded],

@@ -108,4 +108,14 @@ def _draw_cell(ax: Axes, cell: CellEquilibrium, region: str) -> None:
     inset.set(xlim=(-_ROOM, _ROOM), ylim=(-_ROOM, _ROOM), aspect="equal")
     inset.set_axis_off()
     note = "" if cell.converged else f"\n({cell.status.value})"
-    inset.set_title(f"{_NAMES[region]}{note}", fontsize=8, pad=1)
+    # The narrow region lies below the last one: what is said of it stands below its shape.
+    below = region == "unlike sides"
+    spot = (0.5, -0.02 if below else 1.02)
+    inset.text(
+        *spot,
+        f"{_NAMES[region]}{note}",
+        fontsize=8,
+        ha="center",
+        va="top" if below else "bottom",
+        transform=inset.transAxes,
+    )

@@ -128,7 +128,7 @@ def test_stable_cell_is_where_the_polygon_goes_by_itself():
 
 
 def test_symmetry_lost_on_a_small_part_of_the_way_is_found():
-    """Twelve adhesions: unstable, stable again, unstable, stable as the substrate stiffens."""
+    """Twelve adhesions: unstable, stable again and unstable as the substrate stiffens."""
     indices = [regular_cell(12, 381.0, k).n_unstable for k in (40.0, 50.0, 80.0, 90.0)]
     assert indices == [0, 2, 0, 2]
     point = symmetry_breaking(12, 381.0)

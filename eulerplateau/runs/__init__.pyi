@@ -15,6 +15,7 @@ from .phase_diagram import run_phase_diagram as run_phase_diagram
 from .phases import REGIONS as REGIONS, PhaseDiagram as PhaseDiagram
 from .plan import load_with as load_with, planned as planned
 from .record import Run as Run, read_run as read_run, read_runs as read_runs
+from .rows import COLUMNS as COLUMNS, BranchRow as BranchRow, Row as Row
 from .running import run as run
 from .series import (
     Branch as Branch,
@@ -35,4 +36,3 @@ from .sweep import (
     conflict as conflict,
     run_sweep as run_sweep,
 )
-from .table import COLUMNS as COLUMNS, BranchRow as BranchRow, Row as Row

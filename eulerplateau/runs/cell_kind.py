@@ -7,7 +7,7 @@ from typing import Any
 
 from eulerplateau.runs.cell_table import CELL_PARAMETERS, CellBranchRow, CellRow
 from eulerplateau.runs.kinds import Kind
-from eulerplateau.runs.protocols import LoadName
+from eulerplateau.runs.rows import LoadName
 from eulerplateau.runs.states import States
 from eulerplateau.solvers import Status
 

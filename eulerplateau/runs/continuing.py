@@ -13,7 +13,7 @@ from typing import Any, Generic, TextIO, TypeVar
 
 from eulerplateau.errors import ConflictError, OutputError
 from eulerplateau.runs.folder import WRITER, check_is_run, shape_name
-from eulerplateau.runs.protocols import Record
+from eulerplateau.runs.rows import Record
 from eulerplateau.runs.shape_files import is_whole_shape
 from eulerplateau.runs.table import read_rows
 

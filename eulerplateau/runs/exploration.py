@@ -22,9 +22,9 @@ from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import Disk, write_whole
 from eulerplateau.runs.recording import Opening, OpenRun, make_mesh, recording
+from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape, stored_start
-from eulerplateau.runs.table import BranchRow
 from eulerplateau.solvers import Equilibrium, Problem
 
 SPECIAL_COLUMNS = (

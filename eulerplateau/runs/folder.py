@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import Disk, sync, write_whole
-from eulerplateau.runs.protocols import LoadName, Record
+from eulerplateau.runs.rows import LoadName, Record, Row
 from eulerplateau.runs.shape_files import write_series, write_shape
-from eulerplateau.runs.table import Row, RowWriter
+from eulerplateau.runs.table import RowWriter
 
 # At most so much of the work is lost with the power.
 _SECOND = 1.0

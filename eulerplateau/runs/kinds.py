@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eulerplateau.film import FILM_LOADS, SPRING_LOAD
-from eulerplateau.runs.protocols import LoadName
+from eulerplateau.runs.rows import BranchRow, LoadName, Row, columns
 from eulerplateau.runs.states import FILM_STATES, States
-from eulerplateau.runs.table import BranchRow, Row, columns
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,11 @@ from eulerplateau.errors import MissingLibraryError, OutputError
 from eulerplateau.film import SPRING_LOAD
 from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.kinds import FILM, Kind
-from eulerplateau.runs.protocols import LoadName, Record
+from eulerplateau.runs.rows import LoadName, Record, columns
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
 from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
 from eulerplateau.runs.states import distinct_steps, stable_states
-from eulerplateau.runs.table import columns, read_rows
+from eulerplateau.runs.table import read_rows
 
 
 @dataclass(frozen=True, repr=False)

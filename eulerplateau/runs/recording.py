@@ -21,9 +21,8 @@ from eulerplateau.film import FILM_LOADS, Load
 from eulerplateau.mesh import Disk, Measurer, generate, read_disk
 from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
 from eulerplateau.runs.folder import RunFolder, shape_name
-from eulerplateau.runs.protocols import Record
+from eulerplateau.runs.rows import Record, Row
 from eulerplateau.runs.spec import RunSpec, StoredMesh
-from eulerplateau.runs.table import Row
 from eulerplateau.solvers import Equilibrium
 
 # Matrices here are as large as the loop: a second thread waits more than it works.

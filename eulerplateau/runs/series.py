@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.runs.protocols import BranchRecord, Record
+from eulerplateau.runs.rows import BranchRecord, Record
 
 # Of a row, whatever the run follows: a film or a cell.
 Quantity = Callable[[Any], float | None]

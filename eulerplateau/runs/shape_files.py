@@ -29,8 +29,7 @@ from eulerplateau.mesh import (
     write_vtp,
     write_whole,
 )
-from eulerplateau.runs.protocols import LoadName
-from eulerplateau.runs.table import Row
+from eulerplateau.runs.rows import LoadName, Row
 
 # Field data of a shape file: of its row, and the SHA-256 of the mesh at rest in bytes.
 _OF_ITS_ROW = "step", "kL3_alpha", "sigma_hat", "energy"

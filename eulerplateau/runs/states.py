@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from eulerplateau.runs.table import Row
+from eulerplateau.runs.rows import Row
 
 # Below this the loop's normal curvature is a remnant of the transverse kick and of soft
 # modes near onset; a twisted state 1e-3 (relative) above its onset is well above it.

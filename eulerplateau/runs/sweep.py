@@ -23,10 +23,10 @@ from eulerplateau.runs.recording import (
     not_converged,
     recording,
 )
+from eulerplateau.runs.rows import Row
 from eulerplateau.runs.shape_files import read_state
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape
-from eulerplateau.runs.table import Row
 from eulerplateau.solvers import Equilibrium, Problem, sweep
 
 

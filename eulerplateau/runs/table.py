@@ -5,98 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TypeVar
 
 from eulerplateau.errors import OutputError
-from eulerplateau.film import LOADS, SPRING_LOAD, Load
-from eulerplateau.runs.protocols import Record
+from eulerplateau.film import SPRING_LOAD
+from eulerplateau.runs.rows import Record, Row, columns
 from eulerplateau.solvers import Status
-
-
-@dataclass(frozen=True)
-class Row:
-    """One load of a sweep; its fields but the last, in this order, are sweep.csv's columns.
-
-    `quantity` says which of kL3_alpha and sigma_hat is to be taken for the load; the table
-    does not repeat it in every row, for run.json knows the film.
-
-    Units: lengths L, energies alpha/L, max_turning and waist_twist degrees. None is an
-    empty cell ("not computed"); a float that came out as NaN or infinite is written `nan`
-    or `inf`, so that the two stay apart (pandas reads an empty cell and `nan` as NaN).
-    """
-
-    step: int
-    kL3_alpha: float  # noqa: N815 - the column's name
-    sigma_hat: float
-    energy: float
-    film_energy: float
-    bending_energy: float
-    abs_kappa_n: float
-    total_gauss_curvature: float
-    area: float
-    n_unstable: int | None
-    lowest_eigenvalue: float | None
-    residual: float
-    length_error: float
-    iterations: int
-    seconds: float
-    status: Status
-    max_turning: float
-    waist_twist: float
-    self_intersections: int | None
-    aspect: float
-    min_angle: float
-    film_residual: float
-    quantity: str = field(default=SPRING_LOAD.column, kw_only=True)
-
-    @property
-    def load(self) -> float:
-        """The load, in the unit that `quantity` says."""
-        return float(getattr(self, self.quantity))
-
-    @property
-    def load_energy(self) -> float:
-        """The part of the energy that is proportional to the load."""
-        return self.film_energy
-
-    @property
-    def load_name(self) -> Load:
-        """What this load is called."""
-        return LOADS[self.quantity]
-
-    @property
-    def converged(self) -> bool:
-        """Whether the row is an equilibrium to be trusted."""
-        return self.status is Status.CONVERGED
-
-
-@dataclass(frozen=True)
-class BranchRow(Row):
-    """One point of a branch: a row of branches.csv, the columns of sweep.csv and these.
-
-    Attributes
-    ----------
-    branch : int, counted from 0
-    origin : int, the number of the special point the branch starts from; None for the first
-    special : int, the number of this special point; None for a regular point
-    arclength : float, from the special point the branch starts from, or its first point
-    """
-
-    branch: int
-    origin: int | None
-    special: int | None
-    arclength: float
-
-
-def columns(row_type: type[Any]) -> tuple[str, ...]:
-    """Return the names of the columns of a table of such rows: their fields."""
-    return tuple(column.name for column in fields(row_type) if not column.kw_only)
-
-
-COLUMNS = columns(Row)
 
 _INTEGERS = {
     "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special"

@@ -16,8 +16,9 @@ from eulerplateau.branches.special import BIFURCATION, FOLD
 from eulerplateau.pictures.branch_diagram import draw_branches, plot_branches
 from eulerplateau.pictures.film_pictures import signed_twists
 from eulerplateau.runs.record import Run
+from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.series import Branch, energy_above, read_branches
-from eulerplateau.runs.table import BranchRow, RowWriter
+from eulerplateau.runs.table import RowWriter
 from tests.helpers.shapes import fitted_order
 from tests.pictures.test_pictures import read_png
 from tests.runs.test_output import ROW

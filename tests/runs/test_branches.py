@@ -18,9 +18,10 @@ from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.vtp import read_vtp
 from eulerplateau.runs.exploration import SPECIAL_COLUMNS, Exploration, run_branches
 from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.shape_files import read_shape
 from eulerplateau.runs.spec import RunSpec, load_run
-from eulerplateau.runs.table import BranchRow, read_rows
+from eulerplateau.runs.table import read_rows
 from eulerplateau.settings import validate
 from tests.helpers.command import Shell, run_here
 from tests.helpers.shapes import disk_points, mesh_of

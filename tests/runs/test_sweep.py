@@ -15,10 +15,11 @@ from eulerplateau.errors import ConflictError, MeshError, OutputError, SpecError
 from eulerplateau.mesh import write_mesh
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.files import read_triangles
+from eulerplateau.runs.rows import Row
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape
 from eulerplateau.runs.sweep import run_sweep
-from eulerplateau.runs.table import Row, read_rows
+from eulerplateau.runs.table import read_rows
 from eulerplateau.settings import validate
 from eulerplateau.solvers import Problem, Status, solve
 from tests.helpers import equilibria

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from eulerplateau.mesh.formats import write_vtp
-from eulerplateau.runs.table import BranchRow, read_rows
+from eulerplateau.runs.rows import BranchRow
+from eulerplateau.runs.table import read_rows
 from tests.helpers.command import Shell, run_here
 from tests.helpers.extremes import cases, oval
 

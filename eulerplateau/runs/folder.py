@@ -68,6 +68,7 @@ class RunFolder:
         self._load: LoadName | None = None
         self._series = path / f"{name}.pvd"
         self._rows = RowWriter(path / f"{name}.csv", row_type, len(kept))
+        self._unlisted = False
         self._synced = self._listed = self._list_shapes_seconds = 0.0
 
     @classmethod
@@ -119,18 +120,17 @@ class RunFolder:
         name = shape_name(row.step)
         write(self.path / name)
         self._shapes.append((row.step, row.load, name))
-        self._load = row.load_name
+        self._load, self._unlisted = row.load_name, True
+        now, spent = time.monotonic(), self._list_shapes_seconds
+        # The list of all shapes is as long as the run: to write it costs ever more.
+        if len(self._shapes) <= _FEW or now - self._listed >= 20 * spent:
+            self._list_shapes()
         self._rows.append(row)
-        now = time.monotonic()
         if now - self._synced >= _SECOND:
             # A shape is synced before the row that promises it.
             sync(self.path / name)
             self._rows.sync()
             self._synced = now
-        # The list of all shapes is as long as the run: to write it costs ever more.
-        spent = self._list_shapes_seconds
-        if len(self._shapes) <= _FEW or now - self._listed >= 20 * spent:
-            self._list_shapes()
 
     def write_summary(self, summary: Mapping[str, object]) -> None:
         """Replace run.json by `summary`: plain data, all floats finite."""
@@ -139,7 +139,8 @@ class RunFolder:
     def _list_shapes(self) -> None:
         """Write the series of all shapes so far."""
         began = time.monotonic()
-        if self._load is not None:
+        if self._load is not None and self._unlisted:
+            self._unlisted = False
             write_series(self._series, self._shapes, self._load)
         self._listed = time.monotonic()
         self._list_shapes_seconds = self._listed - began

@@ -55,7 +55,8 @@ def followed(start: CellEquilibrium, step: float, end: float) -> End | None:
 
 def kept(last: CellEquilibrium, after: CellEquilibrium) -> bool:
     """Return whether a minimum is still there, and as symmetric as before."""
-    return after.converged and np.ptp(after.extensions) < 1e-4 + np.ptp(last.extensions)
+    unlike = float(np.ptp(after.extensions)) - float(np.ptp(last.extensions))
+    return after.converged and unlike < 1e-4
 
 
 def light_start(edges: int, sigma_hat: float, ks_hat: float) -> CellEquilibrium:

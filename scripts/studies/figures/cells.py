@@ -224,6 +224,8 @@ def _lines(ax: Axes) -> None:
     ax.plot(meeting.ks_hat, meeting.sigma_hat, "o", color=BLACK, markerfacecolor="white")
     ax.axhline(star(3).sigma_p, color="0.4", linestyle=":", label=r"$\sigma_p$")
     ax.set(xscale="log", yscale="log", xlim=(50, 1000), ylim=(3, 1000))
+    ax.set_xticks([50, 100, 200, 500, 1000], ["50", "100", "200", "500", "1000"])
+    ax.minorticks_off()
     _label(ax, "D", K_S, SIGMA, "")
 
 

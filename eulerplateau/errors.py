@@ -64,6 +64,26 @@ class OutputError(EulerPlateauError):
         return "{}: {}".format(*self.args)
 
 
+class ConflictError(EulerPlateauError):
+    """A run folder holds another run, or another process writes to it.
+
+    `keys` are those in which the two runs differ.
+    """
+
+    exit_code = 6
+
+    def __init__(self, path: object, keys: list[str], writer: str = "") -> None:
+        super().__init__(path, keys, writer)
+        self.keys = keys
+
+    def __str__(self) -> str:
+        path, keys, writer = self.args
+        if writer:
+            return f"{path}: {writer} is writing to it: wait for its end, or name another"
+        named = ", ".join(keys)
+        return f"{path}: holds another run, with other {named}: --overwrite replaces it"
+
+
 class MissingLibraryError(EulerPlateauError):
     """A library is missing; the message says which package brings it."""
 

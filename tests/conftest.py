@@ -22,7 +22,9 @@ ROOT = Path(__file__).parents[1]
 # The longest files, so that on several cores none is left over at the end.
 LONGEST = (
     "test_rod_balance",
+    "test_generation",
     "test_docs",
+    "test_comparison",
     "test_conjugate_gradient",
     "test_render",
     "test_main",
@@ -30,6 +32,7 @@ LONGEST = (
     "test_exploration",
     "test_sweep",
     "test_extreme_meshes",
+    "test_conformal_eight",
 )
 
 

@@ -15,5 +15,5 @@ from .regular import (
     symmetric_index as symmetric_index,
     symmetric_part as symmetric_part,
 )
-from .solving import solve_cell as solve_cell, sweep_cell as sweep_cell
+from .solving import ENDS as ENDS, solve_cell as solve_cell, sweep_cell as sweep_cell
 from .touching import crosses_itself as crosses_itself, strands_near as strands_near

@@ -51,8 +51,9 @@ def regular_sites(n: int) -> Sites:
 def read_sites(path: str | Path) -> Sites:
     """Return the sites of a CSV file: x, y and, if wanted, relative stiffness a line.
 
-    The first line may name the columns. Points that run clockwise are reversed. Raises
-    SpecError, which says which line is wrong and what would be right.
+    The first line may name the columns, and a # starts a comment. Points that run
+    clockwise are reversed. Raises SpecError, which says which line is wrong and what would
+    be right.
     """
     rows = _numbers(Path(path), _lines(Path(path)))
     points = np.array([row[:2] for _, row in rows])
@@ -65,10 +66,13 @@ def read_sites(path: str | Path) -> Sites:
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """Return the lines that are not empty, each with its number and its fields."""
+    """Return the lines that are not empty, each with its number and its fields.
+
+    What follows a # is a comment.
+    """
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file)
+            reader = csv.reader(line.partition("#")[0] for line in file)
             lines = [(reader.line_num, [f.strip() for f in fields]) for fields in reader]
     except OSError as error:
         raise SpecError(str(path), f"cannot be read: {error.strerror}") from None

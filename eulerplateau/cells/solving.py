@@ -18,6 +18,8 @@ from eulerplateau.errors import SpecError
 from eulerplateau.solvers import DenseModels, Descent, Status, one_thread, stability
 
 _MAX_ITERATIONS = 500
+# Beyond a cell of these statuses a sweep does not go.
+ENDS = Status.TOUCHING, Status.COLLAPSED, Status.NOT_FINITE
 
 CellStart = CellEquilibrium | ArrayLike
 
@@ -74,7 +76,7 @@ def sweep_cell(
     for sigma_hat, ks_hat in values:
         found = solve_cell(cell, sigma_hat, ks_hat, start, max_iterations=max_iterations)
         yield found
-        if found.status in (Status.TOUCHING, Status.COLLAPSED, Status.NOT_FINITE):
+        if found.status in ENDS:
             return
         start = found
 

@@ -26,7 +26,7 @@ _INTERRUPTED = 130
 EXIT_CODES = """\b
 Exit codes: 0 all is well; 2 the specification or the arguments are wrong;
 3 the mesh is wrong; 4 a load did not converge; 5 a file could not be
-read or written; 130 interrupted."""
+read or written; 6 the folder holds another run; 130 interrupted."""
 
 
 @click.group(epilog=EXIT_CODES)

@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.overrides import load_single, single_values
+from eulerplateau.cli.overrides import (
+    OVERWRITE,
+    before,
+    load_single,
+    single_values,
+)
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:
@@ -30,9 +35,15 @@ if TYPE_CHECKING:
     help="Replace a key of the specification, as in branches.special_points=3.",
 )
 @click.option("--pictures/--no-pictures", default=True, help="Draw branches.png (default).")
+@OVERWRITE
 @click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
 def branches(
-    spec: Path, out: Path | None, settings: tuple[str, ...], pictures: bool, quiet: bool
+    spec: Path,
+    out: Path | None,
+    settings: tuple[str, ...],
+    pictures: bool,
+    overwrite: bool,
+    quiet: bool,
 ) -> int:
     """Follow the branches of equilibria of RUN.toml, stable and unstable, through folds.
 
@@ -45,7 +56,7 @@ def branches(
     run = load_single(spec, settings, load_run)
     name = run_name(spec, single_values(settings))
     folder = out or spec.with_name(f"{name}-branches")
-    result = _explore(run, folder, quiet)
+    result = _explore(run, folder, quiet, overwrite)
     drawn = ["branches.csv", "special_points.csv", "branches.pvd"]
     if pictures:
         from eulerplateau.pictures import draw_branches
@@ -53,6 +64,8 @@ def branches(
         if draw_branches(folder):
             drawn.append("branches.png")
     if not quiet:
+        if result.finished:
+            before(folder, len(result.rows), finished=True)
         _report(result, drawn)
     if not result.unresolved:
         return 0
@@ -64,11 +77,11 @@ def branches(
     return NOT_CONVERGED_EXIT_CODE
 
 
-def _explore(run: RunSpec, folder: Path, quiet: bool) -> Exploration:
+def _explore(run: RunSpec, folder: Path, quiet: bool, overwrite: bool) -> Exploration:
     from eulerplateau.runs import run_branches
 
     if quiet:
-        return run_branches(run, folder)
+        return run_branches(run, folder, overwrite=overwrite)
     from tqdm import tqdm
 
     with tqdm(desc=folder.name, unit="point", dynamic_ncols=True) as bar:
@@ -80,16 +93,17 @@ def _explore(run: RunSpec, folder: Path, quiet: bool) -> Exploration:
             )
             bar.update()
 
-        return run_branches(run, folder, show)
+        return run_branches(run, folder, show, overwrite=overwrite)
 
 
 def _report(result: Exploration, drawn: list[str]) -> None:
     load = result.rows[0].load_name
     for point in result.special:
         click.echo(
-            f"{point['kind']} {point['number']} at {load.text} = {point[load.column]:.8g} "
-            f"+- {point[f'{load.column}_error']:.1g} on branch {point['branch']}, breaks: "
-            f"{point['breaks'] or 'nothing'}"
+            f"{point['kind']} {point['number']} at {load.text} = "
+            f"{float(point[load.column]):.8g} +- "
+            f"{float(point[f'{load.column}_error']):.1g} on branch {point['branch']}, "
+            f"breaks: {point['breaks'] or 'nothing'}"
         )
     number = 1 + max(row.branch for row in result.rows)
     click.echo(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.overrides import load_single
+from eulerplateau.cli.overrides import load_single, single_values
 
 if TYPE_CHECKING:
     from eulerplateau.runs import PhaseDiagram
@@ -38,10 +38,11 @@ def phase_diagram(
     fold of its regular shapes), points.csv, sweep.csv and shapes/*.vtp (a shape in the
     middle of each region), run.json, phase-diagram.png.
     """
-    from eulerplateau.runs import load_cell_run
+    from eulerplateau.runs import load_cell_run, run_name
 
     run = load_single(spec, settings, load_cell_run)
-    folder = out or spec.with_name(f"{spec.stem}-phases")
+    name = run_name(spec, single_values(settings))
+    folder = out or spec.with_name(f"{name}-phases")
     result = _computed(run, folder, quiet)
     drawn = ["lines.csv", "points.csv", "sweep.csv"]
     if pictures:

@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.overrides import load_single, parse_setting
+from eulerplateau.cli.overrides import (
+    OVERWRITE,
+    RESUME,
+    before,
+    load_single,
+    parse_setting,
+    refused,
+    single_values,
+)
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
 
 if TYPE_CHECKING:
@@ -39,12 +47,16 @@ _QUIET = click.option("--quiet", is_flag=True, help="No progress, no summary: fo
     "make several runs, several --set all their combinations.",
 )
 @_PICTURES
+@RESUME
+@OVERWRITE
 @_QUIET
 def sweep(
     specs: tuple[Path, ...],
     out: Path | None,
     settings: tuple[str, ...],
     pictures: bool,
+    resume: bool,
+    overwrite: bool,
     quiet: bool,
 ) -> int:
     """Follow the stable shapes of each RUN.toml's cell over contractility or stiffness.
@@ -52,13 +64,18 @@ def sweep(
     Writes a run folder: sweep.csv (one row per value), shapes/*.vtp and sweep.pvd (for
     ParaView), run.json, diagram.png. A run ends where the cell's edge touches itself.
     """
-    from eulerplateau.runs import load_cell_run, planned
+    from eulerplateau.runs import cell_conflict, load_cell_run, planned
 
     values = [parse_setting(text) for text in settings]
+    runs = planned(list(specs), values, out, load_cell_run)
+    if not overwrite:
+        code = refused(cell_conflict(run, folder, resume=resume) for run, folder in runs)
+        if code:
+            return code
     code = 0
-    for spec, folder in planned(list(specs), values, out, load_cell_run):
+    for spec, folder in runs:
         try:
-            result = _swept(spec, folder, quiet)
+            result = _swept(spec, folder, quiet, resume, overwrite)
         except EulerPlateauError as error:
             # One bad run of many must not cost the others.
             click.echo(f"eulerplateau: {folder}: {error}", err=True)
@@ -69,11 +86,13 @@ def sweep(
     return code
 
 
-def _swept(spec: CellRunSpec, folder: Path, quiet: bool) -> CellRun:
+def _swept(
+    spec: CellRunSpec, folder: Path, quiet: bool, resume: bool, overwrite: bool
+) -> CellRun:
     from eulerplateau.runs import run_cell_sweep
 
     return _shown(
-        lambda show: run_cell_sweep(spec, folder, show),
+        lambda show: run_cell_sweep(spec, folder, show, resume=resume, overwrite=overwrite),
         quiet,
         desc=folder.name,
         unit="shape",
@@ -96,9 +115,15 @@ def _swept(spec: CellRunSpec, folder: Path, quiet: bool) -> CellRun:
     help="Replace a key of the specification, as in branches.special_points=3.",
 )
 @_PICTURES
+@OVERWRITE
 @_QUIET
 def branches(
-    spec: Path, out: Path | None, settings: tuple[str, ...], pictures: bool, quiet: bool
+    spec: Path,
+    out: Path | None,
+    settings: tuple[str, ...],
+    pictures: bool,
+    overwrite: bool,
+    quiet: bool,
 ) -> int:
     """Follow the branches of a cell's shapes, stable and unstable, through folds.
 
@@ -106,12 +131,13 @@ def branches(
     located by an eigenvalue's crossing), shapes/*.vtp with the critical modes,
     branches.pvd (for ParaView), run.json, branches.png.
     """
-    from eulerplateau.runs import load_cell_run, run_cell_branches
+    from eulerplateau.runs import load_cell_run, run_cell_branches, run_name
 
     run = load_single(spec, settings, load_cell_run)
-    folder = out or spec.with_name(f"{spec.stem}-branches")
+    name = run_name(spec, single_values(settings))
+    folder = out or spec.with_name(f"{name}-branches")
     result = _shown(
-        lambda show: run_cell_branches(run, folder, show),
+        lambda show: run_cell_branches(run, folder, show, overwrite=overwrite),
         quiet,
         desc=folder.name,
         unit="point",
@@ -172,6 +198,7 @@ def _report(result: CellRun, wanted: int, drawn: list[str], quiet: bool) -> int:
             err=True,
         )
     if not quiet:
+        before(result.folder, result.kept, result.finished)
         good = len(result.rows) - len(result.failures)
         click.echo(
             f"{result.folder}: {good} of {wanted} shapes converged in "

@@ -27,18 +27,20 @@ _FORMATS = (".png", ".pdf", ".svg")
 def plot(folders: tuple[Path, ...], out: Path, what: str, quiet: bool) -> None:
     """Plot the run folders DIR, of sweeps or branches, together.
 
-    Over the load: `diagram` the loop's total normal curvature, with the shapes; `energy`;
-    `curvature`, the film's total Gauss curvature; `eigenvalue`, the smallest one of the
-    second variation. `onset` fits the exponents with which a film leaves its plane: it
-    needs a dozen loads within 2 % above, as runs/onset.toml has them.
+    Over the load: `diagram` the loop's total normal curvature, of a cell its perimeter and
+    traction, with the shapes; `energy`; `curvature`, the film's total Gauss curvature, of a
+    cell the least curvature half-way along its sides; `eigenvalue`, the smallest one of the
+    second variation. `onset`, of films only, fits the exponents with which a film leaves
+    its plane: it needs a dozen loads within 2 % above, as runs/onset.toml has them.
     """
     from eulerplateau.errors import OutputError
-    from eulerplateau.pictures import draw_comparison, fit_onset
+    from eulerplateau.pictures import check_plot, draw_comparison, fit_onset
     from eulerplateau.runs import read_runs
 
     if out.suffix.lower() not in _FORMATS:
         raise click.BadParameter(f"{out}: should end in {', '.join(_FORMATS)}")
     runs = read_runs(folders)
+    check_plot(runs, what)
     if what == "onset":
         # First, so that what is wrong with a folder is an error that names it.
         for run in runs:

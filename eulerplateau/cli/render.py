@@ -19,16 +19,15 @@ from eulerplateau.errors import OutputError
     "loads",
     type=float,
     multiple=True,
-    help="Show the shape nearest to this load (kL^3/alpha of springs, else sigma_hat) on "
-    "each branch that reaches it; may be repeated.",
+    help="Show the shape nearest to this load (kL^3/alpha of springs, sigma_hat of other "
+    "films, what is varied of cells) on each branch that reaches it; may be repeated.",
 )
 @click.option("--all", "everything", is_flag=True, help="Show every shape.")
 @click.option(
     "--colour",
-    default="sides",
-    show_default=True,
-    help="sides (front blue, back orange), soap (the same, translucent), or a field of the "
-    "shape files: angle_defect inside; kappa, kappa_n, kappa_g, contact_angle on the loop.",
+    help="sides (front blue, back orange; of films by default), soap (the same, "
+    "translucent), or a field of the shape files: angle_defect inside; kappa (of cells by "
+    "default), kappa_n, kappa_g, contact_angle on the loop.",
 )
 @click.option(
     "--animate",
@@ -42,7 +41,7 @@ def render(
     steps: tuple[int, ...],
     loads: tuple[float, ...],
     everything: bool,
-    colour: str,
+    colour: str | None,
     animate: str | None,
     quiet: bool,
 ) -> None:
@@ -68,7 +67,7 @@ def render(
         chosen = [row.step for row in run.rows]
     else:
         chosen = chosen_steps(run, steps, loads)
-    if colour not in (SIDES, SOAP):
+    if colour not in (None, SIDES, SOAP):
         read_field(folder / shape_name(chosen[0]), colour)
     if not draw_shapes(folder, chosen, animate or STILLS, colour):
         raise OutputError(folder / "pictures", "the pictures could not all be drawn")

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.overrides import parse_setting
+from eulerplateau.cli.overrides import (
+    OVERWRITE,
+    RESUME,
+    before,
+    parse_setting,
+    refused,
+)
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
 
 if TYPE_CHECKING:
@@ -35,6 +41,8 @@ if TYPE_CHECKING:
 )
 @click.option("--pictures/--no-pictures", default=True, help="Draw diagram.png (default).")
 @click.option("--render", is_flag=True, help="Render one picture per distinct state.")
+@RESUME
+@OVERWRITE
 @click.option("--quiet", is_flag=True, help="No progress bar, no summary: for batches.")
 def sweep(
     specs: tuple[Path, ...],
@@ -43,22 +51,30 @@ def sweep(
     settings: tuple[str, ...],
     pictures: bool,
     render: bool,
+    resume: bool,
+    overwrite: bool,
     quiet: bool,
 ) -> int:
     """Follow the equilibria of each RUN.toml over its loads.
 
     Writes a run folder: sweep.csv (one row per load), shapes/*.vtp and sweep.pvd (for
-    ParaView), run.json, diagram.png.
+    ParaView), run.json, diagram.png. A run that is there already is kept, and continued if
+    it was interrupted.
     """
-    from eulerplateau.runs import load_run, planned
+    from eulerplateau.runs import conflict, load_run, planned
 
     values = [parse_setting(text) for text in settings]
     if solver is not None:
         values.append(("solver.name", [solver]))
+    runs = planned(list(specs), values, out, load_run)
+    if not overwrite:
+        code = refused(conflict(spec, folder, resume=resume) for spec, folder in runs)
+        if code:
+            return code
     code = 0
-    for spec, folder in planned(list(specs), values, out, load_run):
+    for spec, folder in runs:
         try:
-            result = _run(spec, folder, quiet)
+            result = _run(spec, folder, quiet, resume, overwrite)
         except EulerPlateauError as error:
             # One bad run of many must not cost the others.
             click.echo(f"eulerplateau: {folder}: {error}", err=True)
@@ -71,11 +87,13 @@ def sweep(
     return code
 
 
-def _run(spec: RunSpec, folder: Path, quiet: bool) -> RunResult:
+def _run(
+    spec: RunSpec, folder: Path, quiet: bool, resume: bool, overwrite: bool
+) -> RunResult:
     from eulerplateau.runs import run_sweep
 
     if quiet:
-        return run_sweep(spec, folder)
+        return run_sweep(spec, folder, resume=resume, overwrite=overwrite)
     from tqdm import tqdm
 
     total = len(spec.loads())
@@ -87,7 +105,7 @@ def _run(spec: RunSpec, folder: Path, quiet: bool) -> RunResult:
             )
             bar.update()
 
-        return run_sweep(spec, folder, show)
+        return run_sweep(spec, folder, show, resume=resume, overwrite=overwrite)
 
 
 def _draw(result: RunResult, pictures: bool, render: bool) -> list[str]:
@@ -122,6 +140,7 @@ def _report(result: RunResult, drawn: list[str], quiet: bool) -> None:
             err=True,
         )
     if not quiet:
+        before(result.folder, result.kept, result.finished)
         converged = len(result.rows) - len(result.failures)
         click.echo(
             f"{result.folder}: {converged} of {len(result.rows)} loads converged in "

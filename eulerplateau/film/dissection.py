@@ -7,8 +7,8 @@ factorisation of a planar graph's matrix fills in as little as it can, n log n.
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import breadth_first_order
 
 from eulerplateau.arrays import IntArray
 
@@ -31,7 +31,7 @@ def dissect(
     if len(inside) <= largest:
         return [inside] if len(inside) else []
     landmarks = around[np.linspace(0, len(around), _LANDMARKS, endpoint=False, dtype=int)]
-    distance = np.stack([_edges_away(graph, v)[inside] for v in landmarks])
+    distance = _edges_away(graph, landmarks)[:, inside]
     # Pieces are numbered like a heap: 1 falls into 2 and 3, n into 2 n and 2 n + 1.
     piece = np.ones(len(inside), dtype=np.int64)
     active = np.arange(len(inside))
@@ -67,17 +67,34 @@ def _sides(distance: IntArray, first: IntArray, size: IntArray) -> IntArray:
     return side
 
 
-def _edges_away(graph: csr_array, source: int) -> IntArray:
-    """Return the number of edges (n,) between each vertex and `source`."""
-    n = graph.shape[0]
-    reached, ahead = breadth_first_order(graph, source, directed=False)
-    ahead[source] = source
-    steps = np.full(n, n, dtype=np.int64)
-    steps[reached] = 1
-    steps[source] = 0
-    ahead[ahead < 0] = source
-    # Follow each path back to the source, doubling the stride.
-    while (ahead[reached] != source).any():
-        steps[reached] += steps[ahead[reached]]
-        ahead[reached] = ahead[ahead[reached]]
+def _edges_away(graph: csr_array, sources: IntArray) -> IntArray:
+    """Return the number of edges (m, n) between each of m sources and every vertex.
+
+    It is n where none leads there.
+    """
+    steps = np.full((len(sources), graph.shape[0]), graph.shape[0], dtype=np.int64)
+    _count_edges(graph.indptr, graph.indices, sources, steps)
     return steps
+
+
+@njit(cache=True)
+def _count_edges(
+    indptr: IntArray, indices: IntArray, sources: IntArray, steps: IntArray
+) -> None:
+    """Fill in `steps` (m, n), so far n: breadth first from each of the sources (m,)."""
+    n = steps.shape[1]
+    reached = np.empty(n, dtype=np.int64)
+    for source in range(sources.shape[0]):
+        away = steps[source]
+        away[sources[source]] = 0
+        reached[0] = sources[source]
+        first, last = 0, 1
+        while first < last:
+            vertex = reached[first]
+            first += 1
+            for entry in range(indptr[vertex], indptr[vertex + 1]):
+                other = indices[entry]
+                if away[other] == n:
+                    away[other] = away[vertex] + 1
+                    reached[last] = other
+                    last += 1

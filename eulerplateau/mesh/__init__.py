@@ -3,7 +3,7 @@
     disk.py      the mesh at rest, checked; shape.py: a surface of its vertices anywhere
     making.py    `mesh_polygon`; spec.py: what a file of meshes/ may say; polygon.py: the
                  kinds of polygons, to which another is added; generation.py: Gmsh
-    files.py     mesh files, formats.py: what reads which; writing.py, vtp.py: what writes
+    files.py     mesh files, formats.py: what reads which; writing.py: what writes
     readers/     what a file holds, format by format; mending.py: a disk made of it, by the
                  steps of cleaning.py
     measures.py  the numbers of a shape that become columns of sweep.csv, on curvature.py,

@@ -19,6 +19,6 @@ from .triangles import (
     smallest_angle as smallest_angle,
     unit as unit,
 )
-from .vtp import write_vtp as write_vtp
 from .waist import waist_path as waist_path
-from .whole_files import write_whole as write_whole
+from .whole_files import sync as sync, write_whole as write_whole
+from .writing import write_vtp as write_vtp

@@ -54,8 +54,7 @@ class Shape:
         `write_mesh` knows. Raises MeshError for another extension, OutputError if the file
         cannot be written.
         """
-        from eulerplateau.mesh.vtp import write_vtp
-        from eulerplateau.mesh.writing import write_triangles
+        from eulerplateau.mesh.writing import write_triangles, write_vtp
 
         if Path(path).suffix.lower() == ".vtp":
             write_vtp(Path(path), self.x, self.triangles, loop=self.loop)

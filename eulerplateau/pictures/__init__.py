@@ -2,8 +2,10 @@
 
     sweep_diagram.py, branch_diagram.py   diagram.png and branches.png, on panels.py:
                      quantities over the load, of any number of runs, legs or branches
-    comparison.py    figures for print, of one run or of several; onset.py: scaling laws;
-                     vector_film.py: films drawn as vectors
+    comparison.py    figures for print, of one run or of several; onset.py: scaling laws
+    film_pictures.py, cell_pictures.py   what all of these show, by what a run follows:
+                     of_run.py tells which, kinds.py what there is to be told
+    portraits.py     shapes above a diagram: films by vector_film.py, cells by outlines.py
     planar.py        figures of the exact planar films
     area_fit.py      cell areas over stiffness, with what was fitted to them
     figure.py        labels, colours, saving: what all figures have in common

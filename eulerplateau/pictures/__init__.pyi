@@ -1,6 +1,7 @@
 from .area_fit import draw_area_fit as draw_area_fit
 from .branch_diagram import draw_branches as draw_branches
-from .comparison import draw_comparison as draw_comparison
+from .comparison import check_plot as check_plot, draw_comparison as draw_comparison
+from .of_run import pictures_of as pictures_of
 from .onset import fit_onset as fit_onset
 from .phase_diagram import (
     PHASE_DIAGRAM as PHASE_DIAGRAM,

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain, cycle
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eulerplateau.branches import BIFURCATION, FOLD
 from eulerplateau.errors import OutputError
 from eulerplateau.pictures.figure import (
-    ABS_KAPPA_N,
     BLACK,
     BLUE,
     GREEN,
@@ -25,6 +24,7 @@ from eulerplateau.pictures.figure import (
     figure_of_panels,
     save,
 )
+from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.panels import (
     DASHES,
     Curve,
@@ -32,15 +32,11 @@ from eulerplateau.pictures.panels import (
     Panel,
     draw_panels,
     legend_above,
-    panel,
 )
 from eulerplateau.runs import (
     Branch,
     Run,
-    Series,
-    energy_above,
     read_run,
-    signed_twists,
 )
 
 if TYPE_CHECKING:
@@ -64,8 +60,6 @@ _LEADER: dict[str, Any] = {
 # Special points closer than this part of the loads shown share a label, and labels are
 # kept this part of them apart.
 _TOGETHER, _APART = 5e-3, 0.05
-# A planar film's twist jumps by half turns where its rim passes through itself.
-_JUMP = 90.0
 
 
 def draw_branches(folder: Path) -> bool:
@@ -77,17 +71,18 @@ def draw_branches(folder: Path) -> bool:
 def plot_branches(run: Run, path: Path) -> None:
     """Draw the branches of a run to the PNG file `path`; solid where stable, else dashed.
 
-    Over the load: the loop's total normal curvature, the order parameter of the paper, in
-    which mirror images coincide; the twist of the film's normal across the waist, in which
-    they do not; and the energy above that of the first branch, which tells the state of
-    least energy. Markers tell folds from bifurcations, and lines at the top give their
+    Over the load, of films: the loop's total normal curvature, the order parameter of the
+    paper, in which mirror images coincide; the twist of the film's normal across the waist,
+    in which they do not. Of cells: perimeter, and the least curvature half-way along their
+    sides. Of both the energy above that of the first branch, which tells the state of least
+    energy. Markers tell folds from bifurcations, and lines at the top give their
     loads. A second column enlarges the first stable branch that runs from one special
     point to another, if it is short. Raises OutputError if the file cannot be written, or
     a special point is not in special_points.csv.
     """
     kinds = _kinds(run)
     colours = _colours(run.branches)
-    panels = _panels(run.branches)
+    panels = pictures_of(run.kind).branches(run.branches)
     window = _window(run.branches)
     figure = figure_of_panels(1 if window is None else 2)
     curves = [_curve(branch, colours[branch.origin]) for branch in run.branches]
@@ -103,19 +98,6 @@ def plot_branches(run: Run, path: Path) -> None:
     handles = _handles(run.branches, colours, sorted({kinds[number] for number in loads}))
     legend_above(figure, handles, columns=2 if window is None else 3)
     save(figure, path)
-
-
-def _panels(branches: Sequence[Branch]) -> tuple[Panel, ...]:
-    excess = energy_above(branches[0])
-
-    def twists(series: Series) -> Sequence[Any]:
-        return signed_twists(cast(Branch, series))
-
-    return (
-        panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),
-        Panel("waist twist (deg)", twists, jump=_JUMP, solid_only=True),
-        Panel(r"$(E-E_0)\,L/\alpha$", lambda branch: [excess(branch)], solid_only=True),
-    )
 
 
 def _curve(branch: Branch, colour: str) -> Curve:

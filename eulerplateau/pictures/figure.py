@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import io
 import logging
+import math
 import os
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +19,9 @@ from eulerplateau.mesh import write_whole
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+# What draws a shape into a field.
+DrawShape = Callable[["Axes"], None]
 
 _log = logging.getLogger(__name__)
 
@@ -37,6 +42,40 @@ _DPI = 200
 _WIDTH, _EXTRA, _HEIGHT = 3.4, 0.6, 7.2
 # A range of loads narrower than this part of all loads gets a column of its own.
 _NARROW = 0.2
+
+
+@dataclass(frozen=True)
+class Portraits:
+    """Shapes of several runs, ready to be drawn at one scale.
+
+    Attributes
+    ----------
+    draw : of every run, what draws each of its shapes
+    half : half the width and height of a field, in the unit of the shapes
+    lines : int, how many lines are written above each
+    widest : float, what is wide enough for one, in inches
+    note : str, what there is to be said below them, in a line
+    """
+
+    draw: Sequence[Sequence[DrawShape]]
+    half: tuple[float, float]
+    lines: int = 1
+    widest: float = math.inf
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class FieldLook:
+    """How a field of the shape files is shown.
+
+    Attributes
+    ----------
+    label : str, beside the colour bar
+    signed : bool, whether it is coloured symmetrically about zero
+    """
+
+    label: str
+    signed: bool = False
 
 
 def load_matplotlib() -> None:

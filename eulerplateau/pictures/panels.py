@@ -49,11 +49,12 @@ class Panel:
     Attributes
     ----------
     label : str, of the axis
-    values : of a series of n rows the curves (n,), one, or one for each side of the film
+    values : of a series of n rows the curves (n,), one, or one for each side of a film
     jump : float; a branch has a gap where its curve changes by more from point to point
     solid_only : bool, whether the range is that of the solid curves and the others may
         leave it
-    logarithmic : bool, on both sides of zero if there are unstable films
+    logarithmic : bool, on both sides of zero if there are unstable shapes
+    zero : bool, whether a line marks zero
     ticks, limits : of the axis; chosen from what is drawn if not given
     """
 
@@ -62,6 +63,7 @@ class Panel:
     jump: float = np.inf
     solid_only: bool = False
     logarithmic: bool = False
+    zero: bool = False
     ticks: Sequence[float] | None = None
     limits: Band | None = None
 
@@ -111,6 +113,7 @@ def draw_panels(
     *,
     window: Band | None = None,
     bands: Sequence[Band] = (),
+    band: str = "",
     margin: float = 0.08,
     one_height: bool = False,
 ) -> NDArray[Any]:
@@ -122,7 +125,7 @@ def draw_panels(
     panels, curves : what is drawn; every curve in every panel
     load_label : str, of the axis they share
     window : the loads that a second column enlarges
-    bands : the loads shaded because the film is not planar there
+    bands, band : the loads that are shaded, and what that means
     margin : float, the room above and below the curves, as a part of their range
     one_height : bool, whether the second column keeps the ranges of the first
     """
@@ -132,7 +135,9 @@ def draw_panels(
     for what, line in zip(panels, axes, strict=True):
         line[0].set_ylabel(what.label)
         for ax in line:
-            _shade(ax, bands)
+            _shade(ax, bands, band)
+            if what.zero:
+                ax.axhline(0, color="0.45", linewidth=0.8, zorder=1)
             _draw(ax, what, curves)
             frame(ax)
             ax.margins(y=margin)
@@ -171,9 +176,9 @@ def legend_above(
     )
 
 
-def _shade(ax: Axes, bands: Sequence[Band]) -> None:
+def _shade(ax: Axes, bands: Sequence[Band], meaning: str) -> None:
     for number, (low, high) in enumerate(bands):
-        label = "not planar" if number == 0 else None
+        label = meaning if number == 0 else None
         ax.axvspan(low, high, color="0.9", linewidth=0, zorder=0, label=label)
 
 
@@ -200,7 +205,7 @@ def _draw(ax: Axes, what: Panel, curves: Sequence[Curve]) -> None:
 
 
 def _scale(ax: Axes, curves: Sequence[Curve]) -> None:
-    """Make the scale logarithmic, on both sides of zero if there are unstable films."""
+    """Make the scale logarithmic, on both sides of zero if there are unstable shapes."""
     if any(row.n_unstable for series, _ in curves for row in series.rows):
         ax.set_yscale("symlog", linthresh=1.0)
         ax.axhline(0, color="0.6", linewidth=0.6, zorder=0)

@@ -1,30 +1,36 @@
-"""The diagram of a sweep, diagram.png: four quantities over the load, up and down."""
+"""The diagram of a sweep, diagram.png: its quantities over the load, up and down."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from eulerplateau.pictures.figure import (
-    ABS_KAPPA_N,
     BLUE,
-    MINUS_K,
     ORANGE,
     VERMILION,
     drawn,
     enlarged,
     figure_of_panels,
+    new_figure,
     save,
 )
-from eulerplateau.pictures.panels import Band, Look, draw_panels, legend_above, panel
-from eulerplateau.runs import Run, planar_stretches, read_run
-
-_PANELS = (
-    panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),
-    panel(MINUS_K, lambda row: -row.total_gauss_curvature),
-    panel("waist twist (deg)", lambda row: abs(row.waist_twist), ticks=(0, 90, 180)),
-    panel("short / long axis", lambda row: row.aspect, limits=(0, 1.05)),
+from eulerplateau.pictures.of_run import pictures_of
+from eulerplateau.pictures.panels import Band, Look, draw_panels, legend_above
+from eulerplateau.pictures.portraits import (
+    PortraitLines,
+    number_shapes,
+    portrait_lines,
 )
+from eulerplateau.runs import Run, read_run
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure, FigureBase
+
+# Inches: a shape above the panels, if there are many, and the least for what is written.
+_PORTRAIT, _WRITTEN = 1.1, 5.4
 _RISING: dict[str, Any] = {
     "color": BLUE, "marker": "o", "markersize": 3.6, "markerfacecolor": BLUE,
     "linewidth": 0.8, "linestyle": "-",
@@ -48,37 +54,66 @@ def draw_diagram(folder: Path) -> bool:
 def plot_diagram(run: Run, path: Path) -> None:
     """Draw the bifurcation diagram of a sweep to the PNG file `path`.
 
-    Over the load: the loop's total normal curvature, the order parameter of the paper
-    (its fig. twisting); minus the film's total Gauss curvature; the twist of its normal
-    across the waist; its aspect. Grey bands: loads at which the film is not planar. A
-    second column enlarges the loads at which it first leaves its plane and returns to it,
-    if they are few. Raises OutputError if the file cannot be written.
+    Of a film over the load: the loop's total normal curvature, the order parameter of the
+    paper (its fig. twisting); minus the film's total Gauss curvature; the twist of its
+    normal across the waist; its aspect. Grey bands: loads at which the film is not planar.
+    A second column enlarges the loads at which it first leaves its plane and returns to
+    it, if they are few.
+
+    Of a cell over its contractility or stiffness: perimeter; the least curvature half-way
+    along its sides, below zero where they are inflected (grey bands); the mean traction;
+    its area. Above stand the outlines of its states. Raises OutputError if the file cannot
+    be written.
     """
+    kind = pictures_of(run.kind)
     window = None
-    if run.saddle is not None:
-        window = enlarged(*run.saddle, (row.load for row in run.rows))
-    figure = figure_of_panels(1 if window is None else 2)
+    if run.between is not None:
+        window = enlarged(*run.between, (row.load for row in run.rows))
+    columns = 1 if window is None else 2
+    shown = run.states() if kind.portrayed else []
+    figure, part = figure_of_panels(columns), None
+    if shown:
+        shapes = portrait_lines([run], [shown], kind)
+        figure, above, part = _figure_below(shapes, columns)
+        shapes.draw(above)
     curves = [
         (series, Look(_RISING, _FALLING, _NOT_CONVERGED, series.name))
         for series in run.series
     ]
     axes = draw_panels(
-        figure,
-        _PANELS,
+        part or figure,
+        kind.sweep,
         curves,
         run.load.label,
         window=window,
-        bands=_bands(run),
+        bands=_bands(run, kind.banded),
+        band=kind.band,
         one_height=True,
     )
-    figure.align_ylabels()
+    if shown:
+        number_shapes(axes[0], window, [run], [shown], kind)
+    (part or figure).align_ylabels()
     handles = axes[0, 0].get_legend_handles_labels()[0]
-    legend_above(figure, handles, columns=4, size=10)
+    legend_above(part or figure, handles, columns=4, size=10)
     save(figure, path)
 
 
-def _bands(run: Run) -> list[Band]:
-    """Return the ranges of load (low, high) where the first leg's film is not planar."""
-    bent = [rows for planar, rows in planar_stretches(run.first_leg) if not planar]
-    loads = [[row.load for row in rows] for rows in bent]
+def _figure_below(
+    shapes: PortraitLines, columns: int
+) -> tuple[Figure, FigureBase, FigureBase]:
+    """Return a figure, its part for the shapes and below it that for the panels."""
+    plain = figure_of_panels(columns)
+    width, height = plain.get_size_inches()
+    width = max(width, _PORTRAIT * shapes.columns, _WRITTEN)
+    heights = [shapes.height(width), height]
+    figure = new_figure(width, sum(heights))
+    parts = figure.subfigures(2, 1, height_ratios=heights, squeeze=False)
+    above, below = parts[:, 0]
+    return figure, above, below
+
+
+def _bands(run: Run, banded: Callable[[Any], bool]) -> list[Band]:
+    """Return the ranges of load (low, high) of the first leg's rows that are `banded`."""
+    found = groupby(run.first_leg, key=banded)
+    loads = [[row.load for row in rows] for shaded, rows in found if shaded]
     return [(min(those), max(those)) for those in loads]

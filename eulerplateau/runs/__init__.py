@@ -4,7 +4,8 @@
     spec.py         what a file of runs/ may say, to which a key is added
     start.py        where a run starts: at its mesh or at a stored shape
     sweep.py, exploration.py   a sweep, the branches; recording.py: what both write
-    table.py        the columns of sweep.csv and branches.csv; folder.py: the folder
+    rows.py         the columns of sweep.csv and branches.csv; table.py: the files;
+                    folder.py: the folder
     shape_files.py  shapes/*.vtp and their fields, written and read
     record.py       `read_run`: a folder read back; series.py: the curves of its diagram;
                     states.py: its distinct states

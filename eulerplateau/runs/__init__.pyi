@@ -1,5 +1,7 @@
+from .cell_kind import cell_state as cell_state
 from .cell_runs import (
     CellRun as CellRun,
+    cell_conflict as cell_conflict,
     run_cell_branches as run_cell_branches,
     run_cell_sweep as run_cell_sweep,
 )
@@ -8,13 +10,12 @@ from .cell_table import CellBranchRow as CellBranchRow, CellRow as CellRow
 from .examples import write_examples as write_examples
 from .exploration import Exploration as Exploration, run_branches as run_branches
 from .folder import shape_name as shape_name
-from .phase_diagram import (
-    REGIONS as REGIONS,
-    PhaseDiagram as PhaseDiagram,
-    run_phase_diagram as run_phase_diagram,
-)
+from .kinds import Kind as Kind
+from .phase_diagram import run_phase_diagram as run_phase_diagram
+from .phases import REGIONS as REGIONS, PhaseDiagram as PhaseDiagram
 from .plan import load_with as load_with, planned as planned, run_name as run_name
 from .record import Run as Run, read_run as read_run, read_runs as read_runs
+from .rows import COLUMNS as COLUMNS, BranchRow as BranchRow, Row as Row
 from .running import run as run
 from .series import (
     Branch as Branch,
@@ -22,7 +23,6 @@ from .series import (
     Quantity as Quantity,
     Series as Series,
     energy_above as energy_above,
-    signed_twists as signed_twists,
 )
 from .shape_files import (
     ShapeSequence as ShapeSequence,
@@ -30,10 +30,9 @@ from .shape_files import (
     read_shape as read_shape,
 )
 from .spec import RunSpec as RunSpec, load_run as load_run
-from .states import (
-    distinct_steps as distinct_steps,
-    is_planar as is_planar,
-    planar_stretches as planar_stretches,
+from .states import distinct_steps as distinct_steps, is_planar as is_planar
+from .sweep import (
+    RunResult as RunResult,
+    conflict as conflict,
+    run_sweep as run_sweep,
 )
-from .sweep import RunResult as RunResult, run_sweep as run_sweep
-from .table import COLUMNS as COLUMNS, BranchRow as BranchRow, Row as Row

@@ -5,22 +5,21 @@ from __future__ import annotations
 import csv
 import io
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import SpecialPoint
-from eulerplateau.cells import CellEquilibrium, explore_cell, solve_cell, sweep_cell
-from eulerplateau.loop import edges_of
+from eulerplateau.cells import ENDS, explore_cell, solve_cell, sweep_cell
+from eulerplateau.errors import ConflictError
 from eulerplateau.mesh import write_whole
-from eulerplateau.runs.cell_shapes import write_cell_shape
+from eulerplateau.runs.cell_recording import describe, record_cell
 from eulerplateau.runs.cell_spec import CellRunSpec
 from eulerplateau.runs.cell_table import CellBranchRow, CellRow
-from eulerplateau.runs.recording import OpenRun, not_converged, opened
+from eulerplateau.runs.continuing import look
+from eulerplateau.runs.recording import Opening, not_converged, opened
+from eulerplateau.runs.shape_files import read_state
 
 SPECIAL_COLUMNS = (
     "number", "kind", "sigma_hat", "ks_hat", "error", "branch", "step", "n_unstable",
@@ -30,12 +29,17 @@ SPECIAL_COLUMNS = (
 
 @dataclass(frozen=True)
 class CellRun:
-    """What a run of a cell came to; `special` is empty for a sweep."""
+    """What a run of a cell came to; `special` is empty for a sweep.
+
+    `kept` rows are an earlier call's, which was `finished` if nothing was left to do.
+    """
 
     folder: Path
     rows: tuple[CellRow, ...]
     special: tuple[dict[str, Any], ...]
     seconds: float
+    kept: int = 0
+    finished: bool = False
 
     @property
     def failures(self) -> list[CellRow]:
@@ -44,33 +48,63 @@ class CellRun:
 
 
 def run_cell_sweep(
-    spec: CellRunSpec, path: Path, on_row: Callable[[CellRow], None] = lambda row: None
+    spec: CellRunSpec,
+    path: Path,
+    on_row: Callable[[CellRow], None] = lambda row: None,
+    *,
+    overwrite: bool = False,
+    resume: bool = False,
 ) -> CellRun:
-    """Sweep a cell into the folder `path`, calling `on_row` as each row is on disk.
+    """Sweep a cell into the folder `path`, calling `on_row` as each new row is on disk.
 
-    It ends early where the edge first touches itself. Interrupted or failing half-way it
-    leaves a valid folder and says so in its run.json. Raises SpecError, OutputError.
+    What an earlier call has left there of this very run is kept, and the run goes on from
+    it; with `resume` a run of the first loads of this one is continued too. Another run
+    raises ConflictError, or is replaced if `overwrite` is true. It ends early where the
+    edge first touches itself. Interrupted or failing half-way it leaves a valid folder and
+    says so in its run.json. Raises SpecError, OutputError.
     """
     started = time.perf_counter()
     cell, pairs = spec.cell.made(), spec.pairs()
-    with opened(path, "sweep", CellRow, describe(spec), started) as run:
-        limit = spec.max_iterations
-        for found in sweep_cell(cell, pairs, max_iterations=limit):
+    values = spec.swept.in_order() if resume else None
+    varied = spec.swept.parameter
+    opening = Opening("sweep", CellRow, varied, overwrite, loads=values)
+    with opened(path, opening, describe(spec), started) as run:
+        over = run.finished or any(row.status in ENDS for row in run.rows[-1:])
+        left = [] if over else pairs[run.kept :]
+        start = read_state(run.last_shape)[0].x[:, :2] if run.kept else None
+        for found in sweep_cell(cell, left, start, max_iterations=spec.max_iterations):
             on_row(record_cell(run, CellRow, spec.swept.parameter, found))
             run.totals |= {
                 "values": len(run.rows),
                 "of": len(pairs),
                 "not_converged": not_converged(run.rows),
             }
-    return CellRun(path, tuple(run.rows), (), run.seconds)
+    return CellRun(path, tuple(run.rows), (), run.seconds, run.kept, run.finished)
+
+
+def cell_conflict(
+    spec: CellRunSpec, path: Path, *, resume: bool = False
+) -> ConflictError | None:
+    """Return what stands against a cell's sweep in a folder; None if nothing does."""
+    loads = spec.swept.in_order() if resume else None
+    try:
+        look(path, describe(spec), "sweep", CellRow, spec.swept.parameter, loads)
+    except ConflictError as error:
+        return error
+    return None
 
 
 def run_cell_branches(
     spec: CellRunSpec,
     path: Path,
     on_row: Callable[[CellBranchRow], None] = lambda row: None,
+    *,
+    overwrite: bool = False,
 ) -> CellRun:
     """Explore a cell's branches into the folder `path`; rows appear as they come.
+
+    This very run, finished, is left as it is; unfinished, it starts again. Another run
+    raises ConflictError, or is replaced if `overwrite` is true.
 
     Starts at the lowest value of the window, or at the cell's own where that lies inside,
     and goes both ways from there.
@@ -81,7 +115,10 @@ def run_cell_branches(
     inside = varied in spec.cell.model_fields_set and window[0] < own < window[1]
     start = solve_cell(cell, *spec.pair(own if inside else window[0]))
     special: list[dict[str, Any]] = []
-    with opened(path, "branches", CellBranchRow, describe(spec), started) as run:
+    opening = Opening("branches", CellBranchRow, varied, overwrite, resumable=False)
+    with opened(path, opening, describe(spec), started) as run:
+        if run.finished:
+            return CellRun(path, tuple(run.rows), (), run.seconds, run.kept, True)
         write_whole(path / "special_points.csv", _table(special))
         points = explore_cell(
             cell,
@@ -111,61 +148,6 @@ def run_cell_branches(
             run.totals |= {"points": len(run.rows), "special": len(special)}
             on_row(row)
     return CellRun(path, tuple(run.rows), tuple(special), run.seconds)
-
-
-def describe(spec: CellRunSpec) -> dict[str, Any]:
-    """Return what run.json says before anything is computed."""
-    return {"kind": "cell", "spec": spec.model_dump(mode="json")}
-
-
-def record_cell(
-    run: OpenRun[Any],
-    row_type: type[Any],
-    varied: str,
-    found: CellEquilibrium,
-    modes: Mapping[str, FloatArray] | None = None,
-    **columns: Any,
-) -> Any:
-    """Write a cell's shape and its row, of which `varied` names what is varied."""
-    row = row_type(
-        step=len(run.rows),
-        quantity=varied,
-        **_columns(found),
-        **columns,
-    )
-    run.folder.add(row, lambda path: write_cell_shape(path, found, row, modes))
-    run.rows.append(row)
-    return row
-
-
-def _columns(found: CellEquilibrium) -> dict[str, Any]:
-    """Return all columns of a cell but its step."""
-    stability = found.stability
-    return {
-        "sigma_hat": found.sigma_hat,
-        "ks_hat": found.ks_hat,
-        "beta_hat": found.beta_hat,
-        "energy": found.energy,
-        "bending_energy": found.bending_energy,
-        "film_energy": found.film_energy,
-        "adhesion_energy": found.adhesion_energy,
-        "line_energy": found.line_energy,
-        "perimeter": found.perimeter,
-        "area": found.area,
-        "kappa_adhesion": float(found.kappa_adhesion.mean()),
-        "kappa_mid": float(found.kappa_mid.min()),
-        "extension": float(found.extensions.mean()),
-        "traction": float(found.traction.mean()),
-        "largest_traction": float(found.traction.max()),
-        "tangential": float(np.abs(found.tangential).max()),
-        "n_unstable": found.n_unstable,
-        "lowest_eigenvalue": None if stability is None else stability.lowest,
-        "residual": found.residual,
-        "iterations": found.iterations,
-        "seconds": found.seconds,
-        "status": found.status,
-        "max_turning": float(np.degrees(np.abs(edges_of(found.x).turning).max())),
-    }
 
 
 def _special(row: CellBranchRow, special: SpecialPoint) -> dict[str, Any]:

@@ -9,23 +9,44 @@ from eulerplateau.solvers import Status
 
 @dataclass(frozen=True)
 class CellParameter:
-    """What is varied along a run of a cell; see table.LoadName."""
+    """What is varied along a run of a cell; see table.LoadName.
+
+    Attributes
+    ----------
+    energy : str, the column of the part of the energy that is proportional to it
+    meaning : str, what it is in words; with its definition in TeX
+    """
 
     column: str
     text: str
     symbol: str
     tex: str
+    energy: str
+    meaning: str
 
     @property
     def label(self) -> str:
         """The name as a label of an axis."""
-        return f"${self.tex}$"
+        return self.meaning
 
 
-_SIGMA_TEX, _KS_TEX = r"\hat\sigma=\sigma R_0^3/\alpha", r"\hat k_s=k_sR_0^3/\alpha"
 CELL_PARAMETERS = {
-    "sigma_hat": CellParameter("sigma_hat", "sigma_hat", "σ̂", _SIGMA_TEX),  # noqa: RUF001
-    "ks_hat": CellParameter("ks_hat", "ks_hat", "k̂ₛ", _KS_TEX),
+    "sigma_hat": CellParameter(
+        "sigma_hat",
+        "sigma_hat",
+        "σ̂",  # noqa: RUF001
+        r"\hat\sigma",
+        "film_energy",
+        r"contractility $\hat\sigma=\sigma R_0^3/\alpha$",
+    ),
+    "ks_hat": CellParameter(
+        "ks_hat",
+        "ks_hat",
+        "k̂ₛ",
+        r"\hat k_s",
+        "adhesion_energy",
+        r"stiffness of the adhesions $\hat k_s=k_s R_0^3/\alpha$",
+    ),
 }
 
 
@@ -69,6 +90,11 @@ class CellRow:
     def load(self) -> float:
         """What is varied, by the name `quantity`."""
         return float(getattr(self, self.quantity))
+
+    @property
+    def load_energy(self) -> float:
+        """The part of the energy that is proportional to it."""
+        return float(getattr(self, self.load_name.energy))
 
     @property
     def load_name(self) -> CellParameter:

@@ -19,11 +19,12 @@ from eulerplateau.branches import (
     first_equilibrium,
 )
 from eulerplateau.errors import SpecError
+from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import Disk, write_whole
-from eulerplateau.runs.recording import make_mesh, recording
+from eulerplateau.runs.recording import Opening, OpenRun, make_mesh, recording
+from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape, stored_start
-from eulerplateau.runs.table import BranchRow
 from eulerplateau.solvers import Equilibrium, Problem
 
 SPECIAL_COLUMNS = (
@@ -35,12 +36,13 @@ SPECIAL_COLUMNS = (
 
 @dataclass(frozen=True)
 class Exploration:
-    """What an exploration came to."""
+    """What an exploration came to; `finished` if an earlier call had come to it."""
 
     folder: Path
     rows: tuple[BranchRow, ...]
     special: tuple[dict[str, Any], ...]
     seconds: float
+    finished: bool = False
 
     @property
     def unresolved(self) -> int:
@@ -49,9 +51,16 @@ class Exploration:
 
 
 def run_branches(
-    spec: RunSpec, path: Path, on_row: Callable[[BranchRow], None] = lambda row: None
+    spec: RunSpec,
+    path: Path,
+    on_row: Callable[[BranchRow], None] = lambda row: None,
+    *,
+    overwrite: bool = False,
 ) -> Exploration:
     """Explore the branches of `spec` into the folder `path`; rows appear as they come.
+
+    This very run, finished, is left as it is; unfinished, it starts again. Another run
+    raises ConflictError, or is replaced if `overwrite` is true.
 
     Starts at the window's lowest load from the equilibrium a sweep would find there; with
     start.file from the equilibrium next to that shape, stable or not, at its own load.
@@ -64,7 +73,11 @@ def run_branches(
     window = _window(spec)
     start = _start(spec, disk, problem, window)
     special: list[dict[str, Any]] = []
-    with recording(spec, disk, path, "branches", BranchRow, started) as recorder:
+    column = FILM_LOADS[spec.film.model].column
+    opening = Opening("branches", BranchRow, column, overwrite, resumable=False)
+    with recording(spec, disk, path, opening, started) as recorder:
+        if recorder.run.finished:
+            return _as_it_is(recorder.run)
         write_whole(path / "special_points.csv", _table(special))
         points = explore(
             problem,
@@ -91,6 +104,15 @@ def run_branches(
         finally:
             recorder.run.totals |= {"points": len(rows), "special": len(special)}
     return Exploration(path, tuple(rows), tuple(special), recorder.run.seconds)
+
+
+def _as_it_is(run: OpenRun[BranchRow]) -> Exploration:
+    """Return what a finished exploration has come to."""
+    with (run.folder.path / "special_points.csv").open(
+        newline="", encoding="utf-8"
+    ) as file:
+        special = tuple({**line} for line in csv.DictReader(file))
+    return Exploration(run.folder.path, tuple(run.rows), special, run.seconds, True)
 
 
 def _window(spec: RunSpec) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""What runs follow, films or cells: how the tables of each are read."""
+"""What runs follow, films or cells: how the tables of each are read, and what they show."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from eulerplateau.film import FILM_LOADS, SPRING_LOAD
-from eulerplateau.runs.table import BranchRow, LoadName, Row
+from eulerplateau.runs.rows import BranchRow, LoadName, Row, columns
+from eulerplateau.runs.states import FILM_STATES, States
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,7 @@ class Kind:
     load : what a run varies, by its run.json
     common_load : the column to show runs over that vary different things; None if none
     notes : what a run.json says that tells runs of one name apart
+    states : how the states of a run are told apart
     """
 
     name: str
@@ -28,6 +30,12 @@ class Kind:
     load: Callable[[Mapping[str, Any]], LoadName]
     common_load: str | None
     notes: Callable[[Mapping[str, Any]], tuple[str, ...]]
+    states: States
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The columns of its sweep.csv; branches.csv has more."""
+        return columns(self.row)
 
 
 def _load(about: Mapping[str, Any]) -> LoadName:
@@ -50,4 +58,4 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
         return "", "", ""
 
 
-FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes)
+FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes, FILM_STATES)

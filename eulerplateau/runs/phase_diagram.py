@@ -6,7 +6,6 @@ import csv
 import io
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,8 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
-from eulerplateau.arrays import FloatArray
-from eulerplateau.cells import CellEquilibrium, solve_cell
+from eulerplateau.cells import solve_cell
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell import (
     SymmetryBreaking,
@@ -29,10 +27,11 @@ from eulerplateau.exact.cell import (
     symmetry_breaking,
 )
 from eulerplateau.mesh import write_whole
-from eulerplateau.runs.cell_runs import describe, record_cell
+from eulerplateau.runs.cell_recording import describe, record_cell
 from eulerplateau.runs.cell_spec import CellRunSpec, PhaseDiagramSettings
 from eulerplateau.runs.cell_table import CellRow
-from eulerplateau.runs.recording import opened
+from eulerplateau.runs.phases import REGIONS, Line, PhaseDiagram
+from eulerplateau.runs.recording import Opening, opened
 from eulerplateau.solvers import one_thread
 
 # Points of the fold, and how often a line's beginning is halved.
@@ -42,63 +41,6 @@ _GRID = 48
 LINE_COLUMNS = (
     "line", "sigma_hat", "ks_hat", "wave", "kappa_mid", "extension", "perimeter", "energy"
 )  # fmt: skip
-REGIONS = ("convex", "inflected", "unlike sides", "collapsed")
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of the diagram, by points located one by one.
-
-    Attributes
-    ----------
-    name : "inflection", "symmetry lost", "symmetry regained" or "fold"
-    sigma_hat, ks_hat : (n,) float
-    """
-
-    name: str
-    sigma_hat: FloatArray
-    ks_hat: FloatArray
-
-    def at(self, sigma_hat: FloatArray) -> FloatArray:
-        """Return its stiffness between its points; infinite where it does not reach."""
-        if not len(self.sigma_hat):
-            return np.full_like(sigma_hat, np.inf)
-        x, y = np.log(self.sigma_hat), np.log(self.ks_hat)
-        inside = np.interp(np.log(sigma_hat), x, y, left=np.inf, right=np.inf)
-        return np.exp(inside)
-
-
-@dataclass(frozen=True)
-class PhaseDiagram:
-    """A phase diagram, computed.
-
-    Attributes
-    ----------
-    folder : Path
-    sigma_hat, ks_hat : (low, high), the window
-    lines : Line, by name
-    points : (sigma_hat, ks_hat), of the special points by name
-    sigma_p : float or None, from which on there are stars
-    shapes : by the region, the cell that is solved for in its middle
-    room : by the region, how far its middle is from its border, as a part of the axes
-    """
-
-    folder: Path
-    sigma_hat: tuple[float, float]
-    ks_hat: tuple[float, float]
-    lines: dict[str, Line]
-    points: dict[str, tuple[float, float]]
-    sigma_p: float | None
-    shapes: dict[str, CellEquilibrium]
-    room: dict[str, float]
-    seconds: float
-
-    def regions(self, sigma_hat: FloatArray, ks_hat: FloatArray) -> Any:
-        """Return the region, by its place in REGIONS, of points of the plane."""
-        at = {name: line.at(sigma_hat) for name, line in self.lines.items()}
-        region = np.where(ks_hat > at["inflection"], 1, 0)
-        unlike = (ks_hat > at["symmetry lost"]) & (ks_hat < at["symmetry regained"])
-        return np.where(ks_hat > at["fold"], 3, np.where(unlike, 2, region))
 
 
 def run_phase_diagram(
@@ -117,7 +59,8 @@ def run_phase_diagram(
     points = {name: [p for p in found if p] for name, found in located.items()}
     lines = {name: _line(name, found) for name, found in points.items()}
     special = _special(n)
-    with opened(path, "sweep", CellRow, describe(spec), started) as run:
+    opening = Opening("sweep", CellRow, "sigma_hat", overwrite=True)
+    with opened(path, opening, describe(spec), started) as run:
         write_whole(path / "lines.csv", _table(points))
         write_whole(path / "points.csv", _special_table(n, special))
         diagram = PhaseDiagram(

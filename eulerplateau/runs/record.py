@@ -14,16 +14,11 @@ from eulerplateau.errors import MissingLibraryError, OutputError
 from eulerplateau.film import SPRING_LOAD
 from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.kinds import FILM, Kind
+from eulerplateau.runs.rows import LoadName, Record, columns
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
 from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
-from eulerplateau.runs.states import between_planar, distinct_steps, stable_states
-from eulerplateau.runs.table import (
-    LoadName,
-    Record,
-    Row,
-    columns,
-    read_rows,
-)
+from eulerplateau.runs.states import distinct_steps, stable_states
+from eulerplateau.runs.table import read_rows
 
 
 @dataclass(frozen=True, repr=False)
@@ -83,15 +78,19 @@ class Run:
         return [row for row in self.series[0].rows if row.converged]
 
     @property
-    def saddle(self) -> tuple[float, float] | None:
-        """The loads between which a film first leaves its plane and returns to it."""
+    def between(self) -> tuple[float, float] | None:
+        """The loads to be looked at more closely.
+
+        Of a sweep of a film, those between which it first leaves its plane and returns to
+        it; of branches, those of the first stable one between two special points.
+        """
         if not self.branches:
-            return between_planar(self.first_leg)
+            return self.kind.states.between(self.first_leg)
         bridge = next((branch for branch in self.branches if branch.bridges), None)
         return None if bridge is None else (bridge.loads.min(), bridge.loads.max())
 
     def states(self) -> list[Any]:
-        """Return one row for each distinct state, by load."""
+        """Return the rows that show the distinct states, by load."""
         if self.branches:
             found = stable_states(
                 [
@@ -99,12 +98,17 @@ class Run:
                     for branch in self.branches
                     for stable, part in branch.stretches()
                     if stable
-                ]
+                ],
+                self.kind.states,
             )
         else:
-            chosen = set(distinct_steps(self.rows))
+            chosen = set(self.distinct_steps())
             found = [row for row in self.rows if row.step in chosen]
         return sorted(found, key=lambda row: row.load)
+
+    def distinct_steps(self) -> list[int]:
+        """Return the steps that show the distinct states of a sweep, in its order."""
+        return distinct_steps(self.rows, self.kind.states)
 
     def shape_path(self, row: Record) -> Path:
         """Return the file of a row's shape."""
@@ -124,7 +128,7 @@ class Run:
         except ImportError:
             problem = "a table of rows needs pandas: pip install pandas"
             raise MissingLibraryError(problem) from None
-        names = columns(type(self.rows[0]) if self.rows else Row)
+        names = columns(type(self.rows[0])) if self.rows else self.kind.columns
         cells = {name: [getattr(row, name) for row in self.rows] for name in names}
         cells["status"] = [status.value for status in cells["status"]]
         return pandas.DataFrame(cells)
@@ -235,7 +239,8 @@ def _labels(names: Sequence[str], runs: Sequence[Run]) -> list[str]:
     """Return the names, and what run.json says wherever it says different things."""
     notes = [run.kind.notes(run.about) for run in runs]
     told = [set(column) != {column[0]} for column in zip(*notes, strict=True)]
-    return [
-        ", ".join([name, *(text for text, tell in zip(own, told, strict=True) if tell)])
-        for name, own in zip(names, notes, strict=True)
-    ]
+    found = []
+    for name, own in zip(names, notes, strict=True):
+        telling = [text for text, tell in zip(own, told, strict=True) if tell and text]
+        found.append(", ".join([name, *telling]))
+    return found

@@ -7,19 +7,22 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
+from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+import numpy as np
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from eulerplateau import __version__
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FILM_LOADS, Load
 from eulerplateau.mesh import Disk, Measurer, generate, read_disk
-from eulerplateau.runs.folder import RunFolder
+from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
+from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.rows import Record, Row
 from eulerplateau.runs.spec import RunSpec, StoredMesh
-from eulerplateau.runs.table import Record, Row
 from eulerplateau.solvers import Equilibrium
 
 # Matrices here are as large as the loop: a second thread waits more than it works.
@@ -36,13 +39,22 @@ class OpenRun(Generic[T]):
     Attributes
     ----------
     rows : those that are on disk
+    kept : int, how many of them an earlier call has left
+    finished : bool, whether it had left all of them
     totals : what run.json says when all is over
     """
 
     folder: RunFolder
     started: float
     rows: list[T] = field(default_factory=list)
+    kept: int = 0
+    finished: bool = False
     totals: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def last_shape(self) -> Path:
+        """The file of the last shape."""
+        return self.folder.path / shape_name(self.rows[-1].step)
 
     @property
     def seconds(self) -> float:
@@ -50,29 +62,78 @@ class OpenRun(Generic[T]):
         return time.perf_counter() - self.started
 
 
+@dataclass(frozen=True)
+class Opening(Generic[T]):
+    """How a run folder is opened.
+
+    Attributes
+    ----------
+    name : str, of its table, without .csv
+    quantity : str, the column of what is varied
+    overwrite : bool, whether another run that lies there is replaced
+    resumable : bool, whether rows of this very run are kept, and the run goes on from them
+    loads : what the run follows, if a run of the first of them alone is to be continued
+    """
+
+    name: str
+    row_type: type[T]
+    quantity: str
+    overwrite: bool = False
+    resumable: bool = True
+    loads: Sequence[float] | None = None
+
+
 @contextmanager
 def opened(
-    path: Path, name: str, row_type: type[T], summary: dict[str, Any], started: float
+    path: Path, opening: Opening[T], summary: dict[str, Any], started: float
 ) -> Iterator[OpenRun[T]]:
-    """Open the folder `path` for a run whose table is `name`.csv, and close it.
+    """Open the folder `path` for a run that `summary` describes, and close it.
 
-    Interrupted or failing half-way it leaves a valid folder and says so in its run.json,
-    which otherwise is `summary` with what the run has come to.
+    What lies there decides: nothing, and the run starts; this very run, and it goes on or
+    is finished; another one, which raises ConflictError unless it is to be overwritten.
+    Interrupted or failing half-way the run leaves a valid folder and says so in its
+    run.json, which otherwise is `summary` with what the run has come to.
     """
-    summary = {**summary, "versions": _versions(), "machine": platform.machine()}
-    with (
-        threadpool_limits(BLAS_THREADS, user_api="blas"),
-        RunFolder.create(path, {**summary, "status": "running"}, name, row_type) as folder,
-    ):
-        summary["blas_threads"] = blas_threads()
-        run: OpenRun[T] = OpenRun(folder, started)
-        status = "interrupted"
-        try:
-            yield run
-            status = "finished"
-        finally:
-            totals = {**run.totals, "seconds": run.seconds}
-            folder.write_summary({**summary, "status": status, "totals": totals})
+    summary = {"results": RESULTS, **summary}
+    with only_writer(path), threadpool_limits(BLAS_THREADS, user_api="blas"):
+        lying = _lying(path, opening, summary)
+        if lying.finished:
+            folder = RunFolder(path, opening.name, opening.row_type, lying.rows)
+            with folder:
+                yield OpenRun(folder, started, [*lying.rows], len(lying.rows), True)
+            return
+        summary |= {"versions": _versions(), "machine": platform.machine()}
+        with _folder(path, opening, summary, lying) as folder:
+            summary["blas_threads"] = blas_threads()
+            run = OpenRun(folder, started, [*lying.rows], len(lying.rows))
+            status = "interrupted"
+            try:
+                yield run
+                status = "finished"
+            finally:
+                totals = {**run.totals, "seconds": run.seconds}
+                folder.write_summary({**summary, "status": status, "totals": totals})
+
+
+def _lying(path: Path, opening: Opening[T], summary: dict[str, Any]) -> Lying[T]:
+    nothing: Lying[T] = Lying((), False, {})
+    if opening.overwrite:
+        return nothing
+    found = look(
+        path, summary, opening.name, opening.row_type, opening.quantity, opening.loads
+    )
+    return found if found.finished or opening.resumable else nothing
+
+
+def _folder(
+    path: Path, opening: Opening[T], summary: dict[str, Any], lying: Lying[T]
+) -> RunFolder:
+    running = {**summary, "status": "running"}
+    if not lying.rows:
+        return RunFolder.create(path, running, opening.name, opening.row_type)
+    folder = RunFolder(path, opening.name, opening.row_type, lying.rows)
+    folder.write_summary(running)
+    return folder
 
 
 @dataclass(frozen=True)
@@ -93,19 +154,20 @@ class Recorder(Generic[R]):
         step = len(self.run.rows)
         row = make_row(step, found, self.load, self.row_type, measured | columns)
         disk = self.measurer.disk_of(found.shape)
-        self.run.folder.record(row, disk, found.shape.x, modes, self.rest_mesh)
+        state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
+        self.run.folder.record(row, disk, found.shape.x, modes, self.rest_mesh, state)
         self.run.rows.append(row)
         return row
 
 
 @contextmanager
 def recording(
-    spec: RunSpec, disk: Disk, path: Path, name: str, row_type: type[R], started: float
+    spec: RunSpec, disk: Disk, path: Path, opening: Opening[R], started: float
 ) -> Iterator[Recorder[R]]:
     """Open the folder `path` for a film's run, as `opened` does."""
-    with opened(path, name, row_type, describe(spec, disk), started) as run:
+    with opened(path, opening, describe(spec, disk), started) as run:
         load = FILM_LOADS[spec.film.model]
-        yield Recorder(run, Measurer(disk), load, row_type, disk.digest)
+        yield Recorder(run, Measurer(disk), load, opening.row_type, disk.digest)
 
 
 def blas_threads() -> list[int]:
@@ -138,7 +200,16 @@ def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
             "length": mesh.length,
         },
         "seed": spec.start.seed,
+        "start_sha256": _digest(spec.start.file),
     }
+
+
+def _digest(path: str | None) -> str | None:
+    """Return the SHA-256 of a file's contents; None without one, or if it is not there."""
+    try:
+        return None if path is None else sha256(Path(path).read_bytes()).hexdigest()
+    except OSError:
+        return None
 
 
 def _versions() -> dict[str, str]:

@@ -18,6 +18,7 @@ def run(
     settings: Mapping[str, Any] | None = None,
     *,
     branches: bool = False,
+    overwrite: bool = False,
 ) -> Run:
     """Sweep the loads of a specification into a folder, and return what is there.
 
@@ -29,15 +30,17 @@ def run(
     spec : a file such as runs/elongated.toml, or what such a file holds
     folder : where to; by default beside the file, with its name and what is replaced
         (and -branches)
-        An earlier run there is replaced.
+        This very run, if it is there, is kept and goes on where it was interrupted.
     settings : {dotted key: value}
         Keys of a file to be replaced, as in {"start.seed": 3}.
     branches : bool
         Explore the branches instead of sweeping the loads.
+    overwrite : bool
+        Replace another run that lies in the folder.
 
     Raises
     ------
-    SpecError, MeshError, OutputError : what is wrong, in a line
+    SpecError, MeshError, OutputError, ConflictError : what is wrong, in a line
     """
     if isinstance(spec, str | Path):
         path = Path(spec)
@@ -56,9 +59,9 @@ def run(
     if branches:
         from eulerplateau.runs.exploration import run_branches
 
-        run_branches(chosen, target)
+        run_branches(chosen, target, overwrite=overwrite)
     else:
         from eulerplateau.runs.sweep import run_sweep
 
-        run_sweep(chosen, target)
+        run_sweep(chosen, target, overwrite=overwrite)
     return read_run(target)

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.runs.states import is_planar
-from eulerplateau.runs.table import BranchRecord, Record, Row
+from eulerplateau.runs.rows import BranchRecord, Record
 
 # Of a row, whatever the run follows: a film or a cell.
 Quantity = Callable[[Any], float | None]
@@ -143,16 +142,6 @@ class Branch(Series):
         return f"from point {self.origin} at {self.rows[0].load:.6g}"
 
     @property
-    def abs_kappa_n(self) -> FloatArray:
-        """The loop's total normal curvature (n,)."""
-        return np.array([row.abs_kappa_n for row in self.rows])
-
-    @property
-    def planar(self) -> NDArray[np.bool_]:
-        """Which of the points are planar (n,)."""
-        return np.array([is_planar(row) for row in self.rows])
-
-    @property
     def stable(self) -> NDArray[np.bool_]:
         """Whether it is stable between each point and the next (n - 1,).
 
@@ -237,37 +226,32 @@ def read_branches(rows: Sequence[BranchRecord]) -> list[Branch]:
     return found
 
 
-def signed_twists(branch: Branch) -> list[FloatArray]:
-    """Return the waist twist (n,) in degrees, of both sides if the branch is planar.
-
-    A planar film is its own mirror image, and its twist, 0 or a number of half turns, has
-    no sign: on a branch that leaves the plane it is that of the side the branch is on.
-    """
-    twist = np.array([row.waist_twist for row in branch.rows])
-    if branch.planar.all():
-        return [np.abs(twist), -np.abs(twist)]
-    side = np.sign(twist[np.argmax(branch.abs_kappa_n)])
-    return [np.where(branch.planar, side * np.abs(twist), twist)]
-
-
-def energy_above(first: Series) -> Callable[[Series], FloatArray]:
+def energy_above(*first: Series) -> Callable[[Series], FloatArray]:
     """Return the function that gives a branch's energy (n,) above that of branch `first`.
 
-    It compares at equal loads, and is NaN where `first` does not reach, or not in one
-    piece. At equilibrium dE/dload is the film's energy over the load, so that cubics
+    Of a branch that was followed both ways, `first` are both. It compares at equal loads,
+    and is NaN where `first` does not reach, or not without turning. At equilibrium
+    dE/dload is the energy that is proportional to the load over the load, so that cubics
     interpolate the first branch's energy to fourth order in the step.
     """
-    rising: list[Row] = []
-    for row in first.rows:
-        if rising and row.load <= rising[-1].load:
-            break
-        rising.append(row)
-    if len(rising) < 2:
+    known = {row.load: row for series in first for row in _one_way(series.rows)}
+    if len(known) < 2:
         return lambda branch: np.full(len(branch.rows), np.nan)
-    loads = np.array([row.load for row in rising])
-    energy = np.array([row.energy for row in rising])
-    slope = np.array([row.film_energy for row in rising]) / loads
+    loads = np.array(sorted(known))
+    energy = np.array([known[load].energy for load in loads])
+    slope = np.array([known[load].load_energy for load in loads]) / loads
     base = CubicHermiteSpline(loads, energy, slope, extrapolate=False)
     return lambda branch: np.array(
         [row.energy - float(base(row.load)) for row in branch.rows]
     )
+
+
+def _one_way(rows: Sequence[Any]) -> list[Any]:
+    """Return the rows up to where the load turns."""
+    found = list(rows[:1])
+    for row in rows[1:]:
+        way = np.sign(row.load - found[-1].load)
+        if way == 0 or (len(found) > 1 and way != np.sign(found[1].load - found[0].load)):
+            break
+        found.append(row)
+    return found

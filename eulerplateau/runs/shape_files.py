@@ -29,7 +29,7 @@ from eulerplateau.mesh import (
     write_vtp,
     write_whole,
 )
-from eulerplateau.runs.table import LoadName, Row
+from eulerplateau.runs.rows import LoadName, Row
 
 # Field data of a shape file: of its row, and the SHA-256 of the mesh at rest in bytes.
 _OF_ITS_ROW = "step", "kL3_alpha", "sigma_hat", "energy"
@@ -88,13 +88,15 @@ def write_shape(
     row: Row,
     modes: Mapping[str, FloatArray] | None = None,
     rest_mesh: str | None = None,
+    state: Mapping[str, NDArray[Any]] | None = None,
 ) -> None:
     """Write the film at positions `x` (n_v, 3) to `path` (.vtp), exactly and whole.
 
     Point fields on the loop: kappa, kappa_n, kappa_g, contact_angle, tangent, normal (of
     the film); inside: angle_defect; everywhere: on_loop (1 or 0) and the vectors `modes`,
     (n_v, 3) each, under their names. Field data, of its `row`: step, kL3_alpha, sigma_hat,
-    energy, and the SHA-256 of the mesh at rest, `rest_mesh`, by default that of `mesh`.
+    energy, and the SHA-256 of the mesh at rest, `rest_mesh`, by default that of `mesh`;
+    and of the solver's `state` what it needs to go on from here.
     Raises OutputError if the file cannot be written.
     """
     about = {name: np.array([getattr(row, name)]) for name in _OF_ITS_ROW}
@@ -105,7 +107,11 @@ def write_shape(
         mesh.triangles,
         loop=mesh.loop,
         point_fields=_point_fields(mesh, x) | dict(modes or {}),
-        field_data=about | {_REST_MESH: np.frombuffer(digest, dtype=np.uint8)},
+        field_data={
+            **about,
+            _REST_MESH: np.frombuffer(digest, dtype=np.uint8),
+            **(state or {}),
+        },
     )
 
 
@@ -128,6 +134,22 @@ def read_shape(path: str | Path) -> StoredShape:
         energy=float(about["energy"][0]),
         rest_mesh=digest.astype(np.uint8).tobytes().hex(),
     )
+
+
+def is_whole_shape(path: Path) -> bool:
+    """Return whether a file is a shape of a run that can be read."""
+    try:
+        _read(path, ("step",))
+    except OutputError:
+        return False
+    return True
+
+
+def read_state(path: Path) -> tuple[Shape, Mapping[str, NDArray[Any]]]:
+    """Return a shape of a run and the field data with it; OutputError if it is none."""
+    found = _read(path, ("step",))
+    shape = Shape(found.points, found.triangles, found.lines[0][:-1])
+    return shape, found.field_data
 
 
 def read_shapes(paths: Sequence[Path]) -> ShapeSequence:

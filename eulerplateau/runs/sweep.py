@@ -7,11 +7,26 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from eulerplateau.arrays import FloatArray
-from eulerplateau.runs.recording import make_mesh, not_converged, recording
+from eulerplateau.errors import ConflictError
+from eulerplateau.film import FILM_LOADS
+from eulerplateau.mesh import Disk, Shape
+from eulerplateau.runs.continuing import look
+from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.recording import (
+    Opening,
+    OpenRun,
+    describe,
+    make_mesh,
+    not_converged,
+    recording,
+)
+from eulerplateau.runs.rows import Row
+from eulerplateau.runs.shape_files import read_state
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape
-from eulerplateau.runs.table import Row
 from eulerplateau.solvers import Equilibrium, Problem, sweep
 
 
@@ -20,13 +35,16 @@ class RunResult:
     """What a run came to.
 
     `neutral` numbers the rows with an eigenvalue that cannot be told from zero: whether
-    they are stable is not known.
+    they are stable is not known. `kept` rows are an earlier call's, which was `finished` if
+    there was nothing left to do.
     """
 
     folder: Path
     rows: tuple[Row, ...]
     neutral: tuple[int, ...]
     seconds: float
+    kept: int = 0
+    finished: bool = False
 
     @property
     def failures(self) -> list[Row]:
@@ -35,25 +53,40 @@ class RunResult:
 
 
 def run_sweep(
-    spec: RunSpec, path: Path, on_row: Callable[[Row], None] = lambda row: None
+    spec: RunSpec,
+    path: Path,
+    on_row: Callable[[Row], None] = lambda row: None,
+    *,
+    overwrite: bool = False,
+    resume: bool = False,
 ) -> RunResult:
-    """Run `spec` into the folder `path`, calling `on_row` as each row is on disk.
+    """Run `spec` into the folder `path`, calling `on_row` as each new row is on disk.
 
-    Interrupted (KeyboardInterrupt) or failing half-way it leaves a valid folder and says
-    so in its run.json. Raises MeshError, SpecError, OutputError.
+    What an earlier call has left there of this very run is kept, and the run goes on from
+    it; with `resume` a run of the first loads of this one is continued too. Another run
+    raises ConflictError, or is replaced if `overwrite` is true. Interrupted
+    (KeyboardInterrupt) or failing half-way it leaves a valid folder and says so in its
+    run.json. Raises MeshError, SpecError, OutputError.
     """
     started = time.perf_counter()
     disk = make_mesh(spec)
     problem = Problem(disk, spec.film.model, in_plane=spec.film.plane)
-    start, solver = start_shape(spec, disk), spec.solver
-    neutral: list[int] = []
-    with recording(spec, disk, path, "sweep", Row, started) as recorder:
-        rows = recorder.run.rows
+    start, tensions, solver = start_shape(spec, disk), None, spec.solver
+    column = FILM_LOADS[spec.film.model].column
+    loads = spec.loads()
+    opening = Opening("sweep", Row, column, overwrite, loads=loads if resume else None)
+    with recording(spec, disk, path, opening, started) as recorder:
+        run = recorder.run
+        neutral = _neutral(run)
+        if run.kept and not run.finished:
+            start, tensions = _state(run, disk, start)
+            recorder.measurer.measure(start)
         try:
             for found in sweep(
                 problem,
-                spec.loads(),
+                loads[run.kept :],
                 start,
+                tensions=tensions,
                 solver=solver.name,
                 max_iterations=solver.max_iterations,
             ):
@@ -61,14 +94,47 @@ def run_sweep(
                 neutral += [row.step] if found.n_neutral else []
                 on_row(row)
         finally:
-            recorder.run.totals |= {
-                "loads": len(rows),
-                "not_converged": not_converged(rows),
-                "iterations": sum(row.iterations for row in rows),
-                "solver_seconds": sum(row.seconds for row in rows),
+            run.totals |= {
+                "loads": len(run.rows),
+                "not_converged": not_converged(run.rows),
+                "iterations": sum(row.iterations for row in run.rows),
+                "solver_seconds": sum(row.seconds for row in run.rows),
                 "neutral": neutral,
             }
-    return RunResult(path, tuple(rows), tuple(neutral), recorder.run.seconds)
+    return RunResult(
+        path, tuple(run.rows), tuple(neutral), run.seconds, run.kept, run.finished
+    )
+
+
+def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictError | None:
+    """Return what stands against carrying out a run in a folder; None if nothing does."""
+    if not (path / "run.json").is_file():
+        return None
+    load = FILM_LOADS[spec.film.model].column
+    loads = spec.loads() if resume else None
+    try:
+        look(path, describe(spec, make_mesh(spec)), "sweep", Row, load, loads)
+    except ConflictError as error:
+        return error
+    return None
+
+
+def _neutral(run: OpenRun[Row]) -> list[int]:
+    """Return the numbers of the rows kept that are neutral."""
+    states = (read_state(run.folder.path / shape_name(row.step))[1] for row in run.rows)
+    flags = [bool(state.get("n_neutral", np.zeros(1))[0]) for state in states]
+    return [row.step for row, flag in zip(run.rows, flags, strict=True) if flag]
+
+
+def _state(run: OpenRun[Row], disk: Disk, start: Shape) -> tuple[Shape, FloatArray | None]:
+    """Return the last finite shape of the rows kept and its tensions, or the start."""
+    for row in reversed(run.rows):
+        shape, state = read_state(run.folder.path / shape_name(row.step))
+        if np.isfinite(shape.x).all():
+            if np.array_equal(shape.triangles, disk.triangles):
+                shape = disk.shape.moved(shape.x)  # on the disk's own triangles
+            return shape, state["tensions"].astype(np.float64)
+    return start, None
 
 
 def _modes(spec: RunSpec, problem: Problem, found: Equilibrium) -> dict[str, FloatArray]:

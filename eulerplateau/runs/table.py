@@ -2,166 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from eulerplateau.errors import OutputError
-from eulerplateau.film import LOADS, SPRING_LOAD, Load
+from eulerplateau.film import SPRING_LOAD
+from eulerplateau.runs.rows import Record, Row, columns
 from eulerplateau.solvers import Status
-
-
-class LoadName(Protocol):
-    """What the load of a row is called."""
-
-    @property
-    def column(self) -> str:
-        """Its column in every table."""
-
-    @property
-    def text(self) -> str:
-        """Its name in ASCII."""
-
-    @property
-    def symbol(self) -> str:
-        """Its name in Unicode."""
-
-    @property
-    def tex(self) -> str:
-        """Its name in TeX."""
-
-    @property
-    def label(self) -> str:
-        """Its name as a label of an axis."""
-
-
-class Record(Protocol):
-    """What a row has of whatever is followed in a parameter: a film, a cell."""
-
-    @property
-    def step(self) -> int:
-        """Its number in the run."""
-
-    @property
-    def n_unstable(self) -> int | None:
-        """The Morse index; None where it is not known."""
-
-    @property
-    def status(self) -> Status:
-        """How the solver ended."""
-
-    @property
-    def load(self) -> float:
-        """The parameter that is varied."""
-
-    @property
-    def load_name(self) -> LoadName:
-        """What that is called."""
-
-    @property
-    def converged(self) -> bool:
-        """Whether the row is an equilibrium to be trusted."""
-
-
-class BranchRecord(Record, Protocol):
-    """What a point of a branch has: see BranchRow."""
-
-    @property
-    def branch(self) -> int:
-        """The number of the branch."""
-
-    @property
-    def origin(self) -> int | None:
-        """The special point it starts from."""
-
-    @property
-    def special(self) -> int | None:
-        """The number of this special point."""
-
-    @property
-    def arclength(self) -> float:
-        """How far along the branch."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """One load of a sweep; its fields but the last, in this order, are sweep.csv's columns.
-
-    `quantity` says which of kL3_alpha and sigma_hat is to be taken for the load; the table
-    does not repeat it in every row, for run.json knows the film.
-
-    Units: lengths L, energies alpha/L, max_turning and waist_twist degrees. None is an
-    empty cell ("not computed"); a float that came out as NaN or infinite is written `nan`
-    or `inf`, so that the two stay apart (pandas reads an empty cell and `nan` as NaN).
-    """
-
-    step: int
-    kL3_alpha: float  # noqa: N815 - the column's name
-    sigma_hat: float
-    energy: float
-    film_energy: float
-    bending_energy: float
-    abs_kappa_n: float
-    total_gauss_curvature: float
-    area: float
-    n_unstable: int | None
-    lowest_eigenvalue: float | None
-    residual: float
-    length_error: float
-    iterations: int
-    seconds: float
-    status: Status
-    max_turning: float
-    waist_twist: float
-    self_intersections: int | None
-    aspect: float
-    min_angle: float
-    film_residual: float
-    quantity: str = field(default=SPRING_LOAD.column, kw_only=True)
-
-    @property
-    def load(self) -> float:
-        """The load, in the unit that `quantity` says."""
-        return float(getattr(self, self.quantity))
-
-    @property
-    def load_name(self) -> Load:
-        """What this load is called."""
-        return LOADS[self.quantity]
-
-    @property
-    def converged(self) -> bool:
-        """Whether the row is an equilibrium to be trusted."""
-        return self.status is Status.CONVERGED
-
-
-@dataclass(frozen=True)
-class BranchRow(Row):
-    """One point of a branch: a row of branches.csv, the columns of sweep.csv and these.
-
-    Attributes
-    ----------
-    branch : int, counted from 0
-    origin : int, the number of the special point the branch starts from; None for the first
-    special : int, the number of this special point; None for a regular point
-    arclength : float, from the special point the branch starts from, or its first point
-    """
-
-    branch: int
-    origin: int | None
-    special: int | None
-    arclength: float
-
-
-def columns(row_type: type[Any]) -> tuple[str, ...]:
-    """Return the names of the columns of a table of such rows: their fields."""
-    return tuple(column.name for column in fields(row_type) if not column.kw_only)
-
-
-COLUMNS = columns(Row)
 
 _INTEGERS = {
     "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special"
@@ -180,14 +31,19 @@ class RowWriter:
     cannot be written; a row that did not fit (disk full) is taken back.
     """
 
-    def __init__(self, path: Path, row_type: type[Any] = Row) -> None:
+    def __init__(self, path: Path, row_type: type[Any] = Row, kept: int = 0) -> None:
+        """Start a table, or go on after the first `kept` rows of the one that is there."""
         self._path = path
         self._columns = columns(row_type)
         try:
             # Unbuffered: a row reaches the file in one write, and Ctrl-C finds no half.
-            self._file = path.open("wb", buffering=0)
+            self._file = path.open("r+b" if kept else "wb", buffering=0)
         except OSError as error:
             raise OutputError(path, f"cannot be written: {error.strerror}") from None
+        if kept:
+            lines = path.read_bytes().split(b"\n")[: kept + 1]
+            self._file.truncate(self._file.seek(sum(len(line) + 1 for line in lines)))
+            return
         try:
             self._write_line(",".join(self._columns))
         except OutputError:
@@ -199,6 +55,11 @@ class RowWriter:
         self._write_line(
             ",".join(_cell(name, getattr(row, name)) for name in self._columns)
         )
+
+    def sync(self) -> None:
+        """See to it that the rows outlive a loss of power."""
+        with suppress(OSError):
+            os.fsync(self._file.fileno())
 
     def close(self) -> None:
         """Close the file; the rows are already on disk."""
@@ -236,14 +97,17 @@ def read_rows(
     path: Path,
     row_type: type[RowType] = Row,  # type: ignore[assignment]
     quantity: str = SPRING_LOAD.column,
+    lines: int | None = None,
 ) -> list[RowType]:
     """Read a table of rows back, bit for bit, with `quantity` for their load.
+
+    `lines` limits what is read of it, its first line included.
 
     Raises OutputError naming the line and column that is not as RowWriter wrote it, or if
     the file cannot be read.
     """
     try:
-        header, *lines = path.read_text(encoding="utf-8").splitlines() or [""]
+        header, *rows = path.read_text(encoding="utf-8").splitlines()[:lines] or [""]
     except OSError as error:
         raise OutputError(path, f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
@@ -254,7 +118,7 @@ def read_rows(
     made: Callable[..., RowType] = row_type
     return [
         made(**_values(path, names, number, line), quantity=quantity)
-        for number, line in enumerate(lines, start=2)
+        for number, line in enumerate(rows, start=2)
     ]
 
 

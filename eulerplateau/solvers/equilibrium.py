@@ -63,7 +63,7 @@ class Stability:
 
     Attributes
     ----------
-    eigenvalues : (m,) float, ascending, in units alpha / L^3 for the norm integral |p|^2 ds
+    eigenvalues : (m,) float, ascending, in units alpha / L^4 for the norm integral |p|^2 ds
         All of them, or of a large loop the lowest: every one that is not stable is there.
     error_bound : float
         What rounding can have moved each eigenvalue by.

@@ -7,7 +7,7 @@ A = 2 (B + load S). Where J p = 0 and p is no rigid motion, the Lagrangian's Hes
 
 one n_b x n_b matrix for all three coordinates. Coordinates here are y = sqrt(<s>) x, so
 that eigenvalues belong to the norm of integral |p|^2 ds and converge with the mesh; their
-unit is alpha / L^4 times L, i.e. 1 for L = alpha = 1.
+unit is alpha / L^4, i.e. 1 for L = alpha = 1.
 """
 
 from __future__ import annotations

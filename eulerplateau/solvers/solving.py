@@ -86,6 +86,7 @@ def sweep(
     loads: Iterable[float],
     start: Start | None = None,
     *,
+    tensions: ArrayLike | None = None,
     solver: str = "newton",
     max_iterations: int | None = None,
 ) -> Iterator[Equilibrium]:
@@ -93,11 +94,11 @@ def sweep(
 
     A shape that is not finite is yielded, and not started from. See `solve`.
     """
-    shape, tensions = _start(problem, start)
+    shape, known = _start(problem, start)
+    if tensions is not None:
+        known = _tensions(problem, tensions)
     minimise, limit = _named(solver), _limit(max_iterations)
-    return _swept(
-        problem, [_load(load) for load in loads], shape, tensions, minimise, limit
-    )
+    return _swept(problem, [_load(load) for load in loads], shape, known, minimise, limit)
 
 
 def _swept(

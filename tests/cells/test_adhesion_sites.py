@@ -24,7 +24,7 @@ def test_regular_sites_lie_on_the_unit_circle_counter_clockwise(n: int) -> None:
     assert (regular_sites(n).weights == 1).all()
 
 
-@pytest.mark.parametrize("header", ["", "x,y\n", "x, y \n\n"])
+@pytest.mark.parametrize("header", ["", "x,y\n", "x, y \n\n", "# µm\nx,y # no\n"])
 def test_points_are_read_with_or_without_a_header(tmp_path: Path, header: str) -> None:
     sites = read(tmp_path, header + "0,0\n 2,0\n1,1.5\n\n")
     np.testing.assert_array_equal(sites.points, [[0, 0], [2, 0], [1, 1.5]])

@@ -11,7 +11,8 @@ import pytest
 
 from eulerplateau.mesh import read_disk, write_mesh
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.runs.table import COLUMNS, read_rows
+from eulerplateau.runs.rows import COLUMNS
+from eulerplateau.runs.table import read_rows
 from tests.helpers.command import Shell, command_line, run_here, run_in_shell
 from tests.helpers.processes import PATIENCE, started
 

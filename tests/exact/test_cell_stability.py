@@ -126,3 +126,12 @@ def test_stable_cell_is_where_the_polygon_goes_by_itself():
         found = solve_cell(Cell(regular_sites(3), edges), 10.0, 50.0)
         off.append(found.energy - exact.energy)
     assert np.log2(off[0] / off[1]) == pytest.approx(2.0, abs=0.05)
+
+
+def test_symmetry_lost_on_a_small_part_of_the_way_is_found():
+    """Twelve adhesions: unstable, stable again and unstable as the substrate stiffens."""
+    indices = [regular_cell(12, 381.0, k).n_unstable for k in (40.0, 50.0, 80.0, 90.0)]
+    assert indices == [0, 2, 0, 2]
+    point = symmetry_breaking(12, 381.0)[0]
+    assert point.q == 2
+    assert 40.0 < point.ks_hat < 50.0

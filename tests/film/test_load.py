@@ -20,8 +20,8 @@ from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.pictures.render.pages import caption
 from eulerplateau.runs import run_branches, run_sweep
 from eulerplateau.runs.record import read_run, read_runs
+from eulerplateau.runs.rows import BranchRow, Row
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.table import BranchRow, Row
 from eulerplateau.settings import validate
 from tests.helpers.plotted_runs import loads, pitchfork, record, row_at
 from tests.helpers.shapes import disk_points, mesh_of

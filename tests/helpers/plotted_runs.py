@@ -12,7 +12,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.folder import RunFolder
-from eulerplateau.runs.table import BranchRow, Row
+from eulerplateau.runs.rows import BranchRow, Row
 from tests.helpers.shapes import eight
 from tests.runs.test_output import ROW
 

@@ -14,9 +14,11 @@ import pytest
 
 from eulerplateau.branches.special import BIFURCATION, FOLD
 from eulerplateau.pictures.branch_diagram import draw_branches, plot_branches
+from eulerplateau.pictures.film_pictures import signed_twists
 from eulerplateau.runs.record import Run
-from eulerplateau.runs.series import Branch, energy_above, read_branches, signed_twists
-from eulerplateau.runs.table import BranchRow, RowWriter
+from eulerplateau.runs.rows import BranchRow
+from eulerplateau.runs.series import Branch, energy_above, read_branches
+from eulerplateau.runs.table import RowWriter
 from tests.helpers.shapes import fitted_order
 from tests.pictures.test_pictures import read_png
 from tests.runs.test_output import ROW
@@ -144,7 +146,7 @@ def test_pitchforks_are_drawn_smooth(branches: list[Branch]) -> None:
     branch = branches[1]
     part = slice(0, 5)
     load = branch.smooth(branch.loads, part)
-    kappa = branch.smooth(branch.abs_kappa_n, part)
+    kappa = branch.smooth(branch.values(lambda row: row.abs_kappa_n), part)
     assert load[0] == ONSET
     assert set(branch.loads[part]) <= set(load)
     root = np.sqrt((load - ONSET) / (END - ONSET))
@@ -178,7 +180,7 @@ def test_many_special_points_find_room(tmp_path: Path) -> None:
 
 def check_picture(folder: Path, rows: Sequence[BranchRow], kinds: dict[int, str]) -> None:
     special = {number: {"kind": kind} for number, kind in kinds.items()}
-    run = Run(folder, tuple(rows), special=special)
+    run = Run(folder, tuple(rows), explored=True, special=special)
     plot_branches(run, folder / "branches.png")
     image = read_png(folder / "branches.png")
     assert image.std() > 0.05

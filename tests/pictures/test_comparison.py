@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -21,9 +23,10 @@ from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.scaling import fit_power
+from eulerplateau.branches.scaling import PowerLaw, fit_power
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh.disk import Disk
+from eulerplateau.pictures import onset
 from eulerplateau.pictures.comparison import WHAT, plot_runs, runs_figure
 from eulerplateau.pictures.onset import fit_onset
 from eulerplateau.runs.record import read_runs
@@ -38,6 +41,19 @@ LABEL = {
     "eigenvalue": r"\lambda_1",
     "onset": r"\kappa_n",
 }
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _each_law_fitted_once() -> Iterator[None]:
+    """Most runs here have the same rows."""
+
+    @functools.cache
+    def fitted(x: tuple[float, ...], y: tuple[float, ...]) -> PowerLaw:
+        return fit_power(x, y)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(onset, "fit_power", lambda x, y: fitted(tuple(x), tuple(y)))
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -189,7 +205,7 @@ def test_onset_shows_the_exponents_of_the_fit(sweep: Path) -> None:
         fit_power(x, [row.abs_kappa_n for row in near]),
         fit_power(x, [-row.total_gauss_curvature for row in near]),
     ]
-    assert [onset.law for onset in fit_onset(run)] == laws
+    assert [found.law for found in fit_onset(run)] == laws
     texts = [text for text in legend_texts(runs_figure([run], "onset")) if "±" in text]
     shown = [[float(word) for word in text.split()[1::2]] for text in texts[1:]]
     assert len(shown) == 2

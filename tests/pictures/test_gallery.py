@@ -18,9 +18,10 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.gallery import collect, page
+from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.record import read_run
-from eulerplateau.runs.table import COLUMNS, BranchRow
+from eulerplateau.runs.rows import BranchRow, Row, columns
 from tests.helpers.command import run_here
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
 from tests.runs.test_output import ROW
@@ -124,10 +125,11 @@ def test_columns_the_page_shows_are_those_of_the_table() -> None:
         / "gallery"
         / "quantities.js"
     )
-    lines = static.read_text().splitlines()
-    keys = {line.split('key: "')[1].split('"')[0] for line in lines if "key: " in line}
-    assert keys <= set(COLUMNS)
-    assert len(keys) > 10
+    films, cells = static.read_text().split("cell: [")
+    for text, row in ((films, Row), (cells, CellRow)):
+        keys = {part.split('"')[0] for part in text.split('key: "')[1:]}
+        assert keys <= set(columns(row))
+        assert len(keys) > 10
 
 
 def test_cells_that_are_not_numbers_are_null(tmp_path: Path, mesh: Disk) -> None:

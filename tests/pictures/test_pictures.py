@@ -20,8 +20,9 @@ from eulerplateau.pictures.figure import drawn
 from eulerplateau.pictures.render import draw_shapes
 from eulerplateau.pictures.sweep_diagram import draw_diagram, plot_diagram
 from eulerplateau.runs.record import Run
+from eulerplateau.runs.rows import Row
 from eulerplateau.runs.states import distinct_steps
-from eulerplateau.runs.table import Row, RowWriter
+from eulerplateau.runs.table import RowWriter
 from eulerplateau.solvers.equilibrium import Status
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
 from tests.runs.test_folder import start

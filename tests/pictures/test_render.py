@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -58,22 +58,33 @@ def run(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
     return path
 
 
-@pytest.fixture(scope="module")
-def drawn(run: Path) -> Callable[[str, str, tuple[int, ...]], Path]:
-    """Draw each kind of picture once."""
-    done: set[tuple[str, str, tuple[int, ...]]] = set()
-
-    def draw(kind: str, colour: str, steps: tuple[int, ...]) -> Path:
-        if (kind, colour, steps) not in done:
-            assert draw_shapes(run, steps, kind, colour)
-            done.add((kind, colour, steps))
-        return run / "pictures"
-
-    return draw
-
-
-Draw = Callable[[str, str, tuple[int, ...]], Path]
+# The child's module once for each kind of picture: VTK takes its time to start. Half as
+# many frames as there are go around as well.
+DRAW = """
+import json, runpy, sys
+from eulerplateau.pictures.render import pictures
+pictures._TURN_FRAMES = 24
+for sys.argv[1:] in json.loads(sys.argv[1]):
+    runpy.run_module("eulerplateau.pictures.render", run_name="__main__")
+"""
 EVERY = tuple(range(N_SHAPES))
+BOTH = (FLAT, FOLDED)
+
+
+@pytest.fixture(scope="module")
+def drawn(run: Path) -> Path:
+    """The pictures of every kind, drawn by one child."""
+    wanted = [
+        (STILLS, "sides", EVERY),
+        (STILLS, "soap", BOTH),
+        (STILLS, "angle_defect", BOTH),
+        (STILLS, "kappa_n", BOTH),
+        (TURN, "sides", (FOLDED,)),
+        (SWEEP, "sides", EVERY),
+    ]
+    calls = [[str(run), kind, colour, *map(str, steps)] for kind, colour, steps in wanted]
+    subprocess.run([sys.executable, "-c", DRAW, json.dumps(calls)], check=True)
+    return run / "pictures"
 
 
 def read(path: Path) -> Image:
@@ -119,28 +130,26 @@ def assert_whole(image: Image) -> None:
     assert (image[int(0.88 * len(image)) :].min(axis=2) < 128).any()  # the caption
 
 
-def test_all_of_every_shape_is_seen_and_captioned(drawn: Draw) -> None:
+def test_all_of_every_shape_is_seen_and_captioned(drawn: Path) -> None:
     for step in EVERY:
-        assert_whole(read(drawn(STILLS, "sides", EVERY) / f"shape_{step:04d}.png"))
+        assert_whole(read(drawn / f"shape_{step:04d}.png"))
 
 
-def test_all_pictures_have_one_scale(drawn: Draw) -> None:
-    pictures = drawn(STILLS, "sides", EVERY)
-    large, small = (width(read(pictures / f"shape_{step:04d}.png")) for step in (0, 6))
+def test_all_pictures_have_one_scale(drawn: Path) -> None:
+    large, small = (width(read(drawn / f"shape_{step:04d}.png")) for step in (0, 6))
     # The tube, 0.007 L wide in all pictures, is a fiftieth of the film's width.
     tube = 0.007 / 0.35 * large
     assert (large - tube) / (small - tube) == pytest.approx(2.0, rel=0.02)
 
 
-def test_the_view_is_the_runs_whatever_is_shown(drawn: Draw, run: Path) -> None:
-    pictures = drawn(STILLS, "sides", EVERY)
-    together = read(pictures / "shape_0003.png")
+def test_the_view_is_the_runs_whatever_is_shown(drawn: Path, run: Path) -> None:
+    together = read(drawn / "shape_0003.png")
     assert draw_shapes(run, [3])
-    assert (read(pictures / "shape_0003.png") == together).all()
+    assert (read(drawn / "shape_0003.png") == together).all()
 
 
-def test_contact_sheet_shows_every_shape(drawn: Draw) -> None:
-    sheet = read(drawn(STILLS, "sides", EVERY) / "sheet.png")
+def test_contact_sheet_shows_every_shape(drawn: Path) -> None:
+    sheet = read(drawn / "sheet.png")
     height, wide = 300, 400
     cells = [
         sheet[y : y + height, x : x + wide]
@@ -153,11 +162,9 @@ def test_contact_sheet_shows_every_shape(drawn: Draw) -> None:
     assert all((cell == 255).all() for cell in cells[N_SHAPES:])
 
 
-def test_a_film_that_turns_over_shows_two_colours_in_every_style(drawn: Draw) -> None:
-    steps = (FLAT, FOLDED)
-    for style, name in (("sides", ""), ("soap", "_soap")):
-        pictures = drawn(STILLS, style, EVERY if style == "sides" else steps)
-        flat, folded = (read(pictures / f"shape_{s:04d}{name}.png") for s in steps)
+def test_a_film_that_turns_over_shows_two_colours_in_every_style(drawn: Path) -> None:
+    for name in ("", "_soap"):
+        flat, folded = (read(drawn / f"shape_{step:04d}{name}.png") for step in BOTH)
         assert bluish(flat) > 0.1
         assert reddish(flat) < 0.001
         assert bluish(folded) > 0.02
@@ -175,12 +182,9 @@ def reddish(image: Image) -> float:
 
 
 @pytest.mark.parametrize("field", ["angle_defect", "kappa_n"])
-def test_a_field_has_its_colours_and_their_bar(drawn: Draw, field: str) -> None:
+def test_a_field_has_its_colours_and_their_bar(drawn: Path, field: str) -> None:
     """Neither field vanishes on a film that is twisted; both do on a flat one."""
-    pictures = drawn(STILLS, field, (FLAT, FOLDED))
-    flat, folded = (
-        read(pictures / f"shape_{step:04d}_{field}.png") for step in (FLAT, FOLDED)
-    )
+    flat, folded = (read(drawn / f"shape_{step:04d}_{field}.png") for step in BOTH)
     assert reddish(flat) + bluish(flat) < 0.001
     assert reddish(folded) + bluish(folded) > 0.005
     for image in (flat, folded):
@@ -189,8 +193,8 @@ def test_a_field_has_its_colours_and_their_bar(drawn: Draw, field: str) -> None:
         assert np.ptp(bar[..., 0] - bar[..., 2]) > 200
 
 
-def test_a_turn_goes_once_around_without_leaving_the_picture(drawn: Draw) -> None:
-    images, times = frames(drawn(TURN, "sides", (FOLDED,)) / f"turn_{FOLDED:04d}.gif")
+def test_a_turn_goes_once_around_without_leaving_the_picture(drawn: Path) -> None:
+    images, times = frames(drawn / f"turn_{FOLDED:04d}.gif")
     assert len(set(times)) == 1
     for image in images:
         assert_whole(image)
@@ -198,8 +202,8 @@ def test_a_turn_goes_once_around_without_leaving_the_picture(drawn: Draw) -> Non
     assert 0.0 < max(steps) < 0.5 * max(unlike(images[0], image) for image in images)
 
 
-def test_a_sweep_shows_each_shape_and_holds_the_last(drawn: Draw) -> None:
-    images, times = frames(drawn(SWEEP, "sides", EVERY) / "sweep.gif")
+def test_a_sweep_shows_each_shape_and_holds_the_last(drawn: Path) -> None:
+    images, times = frames(drawn / "sweep.gif")
     assert len(images) == N_SHAPES
     assert times[-1] > 5 * times[0]
     for image in images:

@@ -9,6 +9,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
+from eulerplateau.pictures.figure import FieldLook
 from eulerplateau.pictures.render.colours import (
     LOOP,
     SIDES,
@@ -100,7 +101,9 @@ def test_the_scale_is_the_same_for_all_shapes_and_symmetric_where_signs_matter(
     mesh: Disk,
 ) -> None:
     weak, strong = only(mesh, -0.1, on_loop=False), only(mesh, -5.0, on_loop=False)
-    signed = scale_of("angle_defect", [weak, strong])
+    signed = scale_of(
+        "angle_defect", [weak, strong], FieldLook("angle defect", signed=True)
+    )
     assert (signed.low, signed.high) == (-5.0, 5.0)
     unsigned = scale_of("contact_angle", [-weak, -strong])
     assert (unsigned.low, unsigned.high) == (0.1, 5.0)

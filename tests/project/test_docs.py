@@ -15,6 +15,7 @@ import pytest
 
 import eulerplateau
 from eulerplateau.cli import commands
+from eulerplateau.cli.cell import cell
 from eulerplateau.mesh import MeshSpec
 from eulerplateau.runs import load_run
 from eulerplateau.settings import load_toml
@@ -97,6 +98,27 @@ def test_python_examples_run_in_order_and_print_what_they_say(
         if said is not None:
             words, numbers = words_and_numbers(said)
             assert words_and_numbers(printed) == (words, pytest.approx(numbers, 1e-4, 1e-4))
+
+
+def test_commands_of_the_tutorial_on_cells_do_what_it_says(clone: Path) -> None:
+    page = DOCS / "cells-tutorial.md"
+    for block in blocks(page, "csv") + blocks(page, "toml"):
+        (clone / named(block)).write_text(block)
+    for name in ("cell", "cell-phases"):
+        shutil.copy(ROOT / f"runs/{name}.toml", clone / "runs")
+    lines = command_lines(page, "eulerplateau")
+    commands_of_cells = cell.list_commands(click.Context(cell))
+    assert {line[2] for line in lines if line[1] == "cell"} == set(commands_of_cells)
+    for line in lines:
+        run(*line[1:])
+    for written in (
+        "runs/my-cell/diagram.png",
+        "runs/fold/special_points.csv",
+        "runs/phases/phase-diagram.png",
+        "cells.html",
+        "areas.png",
+    ):
+        assert (clone / written).stat().st_size > 0, written
 
 
 def test_specifications_of_the_tutorial_are_valid(clone: Path) -> None:

@@ -231,10 +231,15 @@ def test_without_a_home_caches_stay_in_the_environment(ready: Clone) -> None:
     assert Path(cache).is_relative_to(ready.path / ".venv")
 
 
-@pytest.mark.parametrize("failing", ["ruff check", "ruff format", "mypy", "pytest"])
+@pytest.mark.parametrize(
+    "failing", ["ruff check", "ruff format", "mypy", "tests.warm", "pytest"]
+)
 def test_every_check_runs_and_any_failure_counts(ready: Clone, failing: str) -> None:
     code, asked = ready.run("test", "-x", FAILING=failing, EXIT_CODE="5")
     assert code == 1
+    # It compiles for the tests while the checks run.
+    assert "-m tests.warm" in asked[:-1]
+    asked.remove("-m tests.warm")
     assert asked == [
         "-m ruff check",
         "-m ruff format --check",

@@ -17,9 +17,10 @@ from eulerplateau.mesh import read_vtp, write_mesh
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.exploration import SPECIAL_COLUMNS, Exploration, run_branches
 from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.shape_files import read_shape
 from eulerplateau.runs.spec import RunSpec, load_run
-from eulerplateau.runs.table import BranchRow, read_rows
+from eulerplateau.runs.table import read_rows
 from eulerplateau.settings import validate
 from tests.helpers.command import Shell, run_here
 from tests.helpers.shapes import disk_points, mesh_of
@@ -167,8 +168,8 @@ def test_interrupt_leaves_what_was_found(tmp_path: Path, last: int) -> None:
     for row in seen:
         read_shape(folder / shape_name(row.step))
     assert json.loads((folder / "run.json").read_text())["status"] == "interrupted"
-    # The next run takes the folder over.
-    again = run_branches(window(special_points=0), folder)
+    # Another run takes the folder over if that is said.
+    again = run_branches(window(special_points=0), folder, overwrite=True)
     assert tuple(read_rows(folder / "branches.csv", BranchRow)) == again.rows
 
 

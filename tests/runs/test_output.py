@@ -19,8 +19,9 @@ from eulerplateau.mesh import read_vtp
 from eulerplateau.mesh.curvature import angle_defects, loop_frame
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.rows import COLUMNS, Row
 from eulerplateau.runs.shape_files import read_shape, write_series, write_shape
-from eulerplateau.runs.table import COLUMNS, Row, RowWriter, read_rows
+from eulerplateau.runs.table import RowWriter, read_rows
 from eulerplateau.solvers.equilibrium import Status
 from tests.helpers.shapes import disk_points, eight, mesh_of
 

@@ -15,8 +15,8 @@ from eulerplateau.film.load import SPRING_LOAD, TENSION
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.record import Run, read_run, read_runs
+from eulerplateau.runs.rows import COLUMNS, BranchRow, columns
 from eulerplateau.runs.series import read_legs
-from eulerplateau.runs.table import COLUMNS, BranchRow, columns
 from eulerplateau.solvers.equilibrium import Status
 from tests.helpers.plotted_runs import pitchfork, record, row_at
 from tests.helpers.shapes import disk_points, mesh_of

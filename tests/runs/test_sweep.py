@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from eulerplateau.errors import MeshError, OutputError, SpecError
+from eulerplateau.errors import ConflictError, MeshError, OutputError, SpecError
 from eulerplateau.mesh import write_mesh
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.files import read_triangles
+from eulerplateau.runs.rows import Row
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape
 from eulerplateau.runs.sweep import run_sweep
-from eulerplateau.runs.table import Row, read_rows
+from eulerplateau.runs.table import read_rows
 from eulerplateau.settings import validate
 from eulerplateau.solvers import Problem, Status, solve
 from tests.helpers import equilibria
@@ -182,8 +183,11 @@ def test_interruption_leaves_a_readable_folder_that_says_so(
     assert found["status"] == "interrupted"
     assert found["totals"]["loads"] == 2
     assert [row.kL3_alpha for row in rows_on_disk(folder)] == [1, 500]
-    # And the folder can be used again.
-    assert len(run_sweep(spec([1]), folder).rows) == 1
+    # And the folder can be used again, for another run if that is said.
+    with pytest.raises(ConflictError, match=r"sweep\.loads"):
+        run_sweep(spec([1]), folder)
+    assert len(rows_on_disk(folder)) == 2
+    assert len(run_sweep(spec([1]), folder, overwrite=True).rows) == 1
     assert summary(folder)["status"] == "finished"
     assert len(list(folder.glob("shapes/*.vtp"))) == 1
 

@@ -2,34 +2,32 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner, Result
 from matplotlib.image import imread
+
+from scripts.studies.figures.__main__ import main
 
 ROOT = Path(__file__).parents[2]
 
 
-def make(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-P", "-m", "scripts.studies.figures", *arguments]
-    path = {**os.environ, "PYTHONPATH": str(ROOT)}
-    return subprocess.run(command, capture_output=True, text=True, check=False, env=path)
+def make(*arguments: str) -> Result:
+    return CliRunner().invoke(main, arguments)
 
 
 def test_one_figure_is_made_and_the_page_left_alone(tmp_path: Path) -> None:
     done = make("planar-energy", "--out", str(tmp_path))
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.output
     assert [path.name for path in (tmp_path / "figures").iterdir()] == ["planar-energy.png"]
     assert imread(tmp_path / "figures" / "planar-energy.png").std() > 0.05
     assert not (tmp_path / "paper.md").exists()
 
 
 def test_unknown_figure_ends_with_exit_code_2(tmp_path: Path) -> None:
-    assert make("frenet", "--out", str(tmp_path)).returncode == 2
+    assert make("frenet", "--out", str(tmp_path)).exit_code == 2
 
 
 def test_committed_page_shows_every_committed_figure_and_no_other() -> None:

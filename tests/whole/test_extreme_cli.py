@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from eulerplateau.mesh.vtp import write_vtp
-from eulerplateau.runs.table import BranchRow, read_rows
+from eulerplateau.mesh.writing import write_vtp
+from eulerplateau.runs.rows import BranchRow
+from eulerplateau.runs.table import read_rows
 from tests.helpers.command import Shell, run_here
 from tests.helpers.extremes import cases, oval
 

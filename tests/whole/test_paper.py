@@ -13,9 +13,9 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
+from eulerplateau.runs.rows import Row
 from eulerplateau.runs.spec import load_run
 from eulerplateau.runs.sweep import run_sweep
-from eulerplateau.runs.table import Row
 from tests.conftest import ROOT
 
 PLANAR = 1e-3

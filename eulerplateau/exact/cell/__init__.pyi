@@ -11,6 +11,7 @@ from .area_fit import AreaFit as AreaFit, Estimate as Estimate, fit_areas as fit
 from .breaking import (
     SymmetryBreaking as SymmetryBreaking,
     symmetry_breaking as symmetry_breaking,
+    symmetry_lost as symmetry_lost,
 )
 from .regular import (
     CellStatus as CellStatus,

@@ -6,11 +6,12 @@ the fold of its own symmetric shapes, and then earlier on a stiffer substrate to
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell.transitions import Stretch, Transition, stable_stretch
@@ -49,6 +50,11 @@ def symmetry_breaking(adhesions: int, sigma_hat: float) -> tuple[SymmetryBreakin
     return tuple(sorted(found, key=lambda point: point.ks_hat))
 
 
+def symmetry_lost(adhesions: int, sigma_hat: float) -> SymmetryBreaking | None:
+    """Return where the stable cell first loses its symmetry; None if it never does."""
+    return next(iter(symmetry_breaking(adhesions, sigma_hat)), None)
+
+
 def _crossings(stretch: Stretch, q: int) -> Iterator[SymmetryBreaking]:
     """Yield where a wave's lowest eigenvalue changes its sign along a stretch."""
 
@@ -57,9 +63,29 @@ def _crossings(stretch: Stretch, q: int) -> Iterator[SymmetryBreaking]:
 
     # Next to the circle k_s is next to nothing, and the wave stable.
     places = np.linspace(stretch.round, stretch.end, _BRACKETS + 1)[1:]
-    stable = np.array([lowest(place) >= 0 for place in places])
-    for place in np.flatnonzero(stable[1:] != stable[:-1]):
-        ends = places[place + 1], places[place]
-        point = stretch.at(float(brentq(lowest, *ends, xtol=1e-14, rtol=1e-14)))
-        lost = bool(stable[place])
-        yield SymmetryBreaking(point.sigma_hat, point.ks_hat, point.cell, q, lost)
+    known = _with_dips(lowest, [(float(c), lowest(float(c))) for c in places])
+    for (before, above), (after, below) in pairwise(known):
+        if (above >= 0) != (below >= 0):
+            c = float(brentq(lowest, after, before, xtol=1e-14, rtol=1e-14))
+            point = stretch.at(c)
+            lost = above >= 0
+            yield SymmetryBreaking(point.sigma_hat, point.ks_hat, point.cell, q, lost)
+
+
+def _with_dips(
+    lowest: Callable[[float], float], known: list[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """Return places and values, and between them where values dip below zero.
+
+    With many adhesions a wave may be unstable for a small part of the curve only.
+    """
+    found = known[:1]
+    for before, here, after in zip(known, known[1:], known[2:], strict=False):
+        found.append(here)
+        if 0 <= here[1] <= min(before[1], after[1]):
+            ends = after[0], before[0]
+            dip = minimize_scalar(lowest, bounds=ends, method="bounded")
+            if dip.fun < 0:
+                found.append((float(dip.x), float(dip.fun)))
+    found += known[-1:]
+    return sorted(found, reverse=True)

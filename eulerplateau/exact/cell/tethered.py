@@ -14,6 +14,7 @@ of xi = (alpha / sigma)^(1/3).
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -146,11 +147,12 @@ class ShapeCurve:
         radius = _free_radius(sigma, beta)
         start = circle(adhesions, radius, _COEFFICIENTS)
         self.start = Tethered(start, sigma, beta, 0.0)
-        self._known = [self.start]
+        # Sorted by c: a search through all of them would cost more than what it finds.
+        self._known, self._places = [self.start], [self.start.kappa_mid]
 
     def at(self, kappa_mid: float) -> Tethered | None:
         """Return the shape with a curvature in mid-side; None if the curve ends before."""
-        shape = min(self._known, key=lambda known: abs(known.kappa_mid - kappa_mid))
+        shape = self._nearest(kappa_mid)
         step = _LARGEST_STEP / shape.radius
         while shape.kappa_mid != kappa_mid:
             gap = kappa_mid - shape.kappa_mid
@@ -163,11 +165,21 @@ class ShapeCurve:
                 continue
             done = c == kappa_mid
             if not done or abs(gap) > 1e-3 * step:
-                self._known.append(after)
+                self._keep(after)
             if done:
                 return after
             shape = after
         return shape
+
+    def _nearest(self, kappa_mid: float) -> Tethered:
+        after = bisect_left(self._places, kappa_mid)
+        beside = self._known[max(after - 1, 0) : after + 1]
+        return min(beside, key=lambda known: abs(known.kappa_mid - kappa_mid))
+
+    def _keep(self, shape: Tethered) -> None:
+        place = bisect_left(self._places, shape.kappa_mid)
+        self._places.insert(place, shape.kappa_mid)
+        self._known.insert(place, shape)
 
     @staticmethod
     def _next(shape: Tethered, kappa_mid: float) -> Tethered | None:

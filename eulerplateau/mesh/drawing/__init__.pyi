@@ -16,4 +16,5 @@ from .view import (
     View as View,
     common_view as common_view,
     turning_views as turning_views,
+    view_from as view_from,
 )

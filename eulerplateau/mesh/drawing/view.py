@@ -57,6 +57,11 @@ def common_view(shapes: Sequence[Shape], raised: float = _RAISED) -> View:
     return _raised(_holding(shapes, good[np.argmax(good @ _EYE)]), raised)
 
 
+def view_from(shapes: Sequence[Shape], eye: FloatArray, raised: float = _RAISED) -> View:
+    """Return a view from the unit vector `eye` (3,) that holds all shapes, `raised`."""
+    return _raised(_holding(shapes, eye), raised)
+
+
 def turning_views(shapes: Sequence[Shape], count: int) -> list[View]:
     """Return `count` views once around the vertical axis; each could hold all shapes."""
     height = np.radians(_TURN_HEIGHT)

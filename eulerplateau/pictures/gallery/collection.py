@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.pictures.alignment import settled_runs
+from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.runs import Run, ShapeSequence, read_runs
 
 
@@ -56,7 +56,7 @@ class Exhibit:
 
     @property
     def x(self) -> FloatArray:
-        """Positions (n_rows, n_v, 3), in units of L."""
+        """Positions (n_rows, n_v, 3), in units of L, of cells R_0."""
         return self.shapes.x
 
 
@@ -72,8 +72,8 @@ def collect(folders: Sequence[Path]) -> Gallery:
     """Read run folders as `sweep` and `branches` write them, finished or not.
 
     Raises OutputError naming the folder that is no run or has no rows yet, or the file
-    that cannot be read or does not belong there. A folder named twice counts once; of films
-    of different kinds all loads are sigma_hat.
+    that cannot be read or does not belong there, or is not of the first one's kind. A
+    folder named twice counts once; of films of different kinds all loads are sigma_hat.
     """
     meshes: list[Mesh] = []
     exhibits: list[Exhibit] = []
@@ -94,6 +94,7 @@ def _settle(exhibits: list[Exhibit], mesh: int, loop: IntArray) -> None:
     """Replace the exhibits of one mesh by ones whose shapes follow each other."""
     alike = [place for place, shown in enumerate(exhibits) if shown.mesh == mesh]
     shown = [exhibits[place] for place in alike]
-    settled = settled_runs([(one.run.series, one.x) for one in shown], loop)
+    stage = pictures_of(shown[0].run.kind).stage
+    settled = stage.settled([(one.run.series, one.x) for one in shown], loop)
     for place, one, x in zip(alike, shown, settled, strict=True):
         exhibits[place] = replace(one, shapes=replace(one.shapes, x=x))

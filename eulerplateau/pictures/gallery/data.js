@@ -24,7 +24,7 @@ function readGallery(element) {
   return { ...gallery, meshes, runs };
 }
 
-// Positions of one shape, (3 n_v) numbers in units of L.
+// Positions of one shape, (3 n_v) numbers in units of L, of cells R_0.
 function positions(gallery, run, place) {
   const size = 3 * run.mesh.vertices;
   const whole = run.shapes.subarray(place * size, (place + 1) * size);

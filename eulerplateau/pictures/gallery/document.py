@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eulerplateau.mesh.drawing import EYE
 from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
-from eulerplateau.runs import COLUMNS, Series
+from eulerplateau.pictures.of_run import pictures_of
+from eulerplateau.runs import Series
 
 # Beyond what is drawn, and at most 1e-5 L away from it: 16 bits for a loop of length 1.
 _INT16 = 32767
@@ -26,8 +26,8 @@ _SCRIPTS = ("quantities", "data", "film", "diagram", "main")
 def page(gallery: Gallery) -> bytes:
     """Return the page, UTF-8; with 474 vertices a shape takes 4 kB and the rest 0.8 MB.
 
-    Positions are rounded to 16 bits: by less than 1e-5 L. The page's content policy
-    forbids the browser to load anything from anywhere.
+    Positions are rounded to 16 bits: by less than 1e-5 of a loop's length. The page's
+    content policy forbids the browser to load anything from anywhere.
     """
     title = ", ".join(shown.run.name for shown in gallery.exhibits)
     parts = {
@@ -48,18 +48,22 @@ def _part(name: str) -> str:
 
 
 def _data(gallery: Gallery) -> dict[str, Any]:
+    first = gallery.exhibits[0].run
+    stage = pictures_of(first.kind).stage
     size = max(float(np.abs(shown.x).max()) for shown in gallery.exhibits)
     # Across and up the first view, in which z points up.
-    across = np.cross([0.0, 0.0, 1.0], EYE)
-    screen = np.stack([across, np.cross(EYE, across)], axis=1)
+    across = np.cross([0.0, 0.0, 1.0], stage.eye)
+    screen = np.stack([across, np.cross(stage.eye, across)], axis=1)
     screen /= np.linalg.norm(screen, axis=0)
     seen = [np.abs(shown.x @ screen).max(axis=(0, 1)) for shown in gallery.exhibits]
     unit = size / _INT16 or 1.0
     return {
-        "columns": [*COLUMNS, "special"],
-        "load": gallery.exhibits[0].run.load.column,
+        "kind": first.kind.name,
+        "columns": [*first.kind.columns, "special"],
+        "load": first.load.column,
         "unit": unit,
-        "eye": EYE.tolist(),
+        "size": stage.size,
+        "eye": stage.eye.tolist(),
         "halfSize": np.max(seen, axis=0).tolist(),
         "meshes": [_mesh(mesh) for mesh in gallery.meshes],
         "runs": [_run(shown, unit) for shown in gallery.exhibits],
@@ -86,7 +90,7 @@ def _run(shown: Exhibit, unit: float) -> dict[str, Any]:
         "series": [_series(series) for series in run.series],
         "special": run.special,
         "rows": [
-            [_value(getattr(row, name, None)) for name in (*COLUMNS, "special")]
+            [_value(getattr(row, name, None)) for name in (*run.kind.columns, "special")]
             for row in run.rows
         ],
     }

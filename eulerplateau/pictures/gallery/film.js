@@ -4,19 +4,21 @@ class Film {
   static FRONT = "#6FB1DE";
   static BACK = "#F0A35E";
   static LOOP = "#2B2B2B";
-  static TUBE = 0.0035;
+  static TUBE = 0.0035; // in loops' lengths
 
-  // `eye` points from the film to the camera; at first it sees `halfSize` [across, up].
-  constructor(canvas, { eye, halfSize }) {
+  // `eye` points from the film to the camera; at first it sees `halfSize` [across, up], in
+  // the unit in which `size` is the length of a loop.
+  constructor(canvas, { eye, halfSize, size }) {
     const L = Libraries;
     this.halfSize = halfSize;
+    this.tubeRadius = Film.TUBE * size;
     this.canvas = canvas;
     this.renderer = new L.WebGLRenderer({ canvas, antialias: true });
     this.renderer.setClearColor("#ffffff");
     this.scene = new L.Scene();
     this.scene.add(new L.AmbientLight("#ffffff", 1.7));
     // Parallel rays and no perspective, so that sizes compare.
-    this.camera = new L.OrthographicCamera(-1, 1, 1, -1, 0, 2);
+    this.camera = new L.OrthographicCamera(-1, 1, 1, -1, 0, 2 * size);
     this.camera.up.set(0, 0, 1);
     const light = new L.DirectionalLight("#ffffff", 1.6);
     light.position.set(0, 0, 1);
@@ -30,7 +32,7 @@ class Film {
     this.tube = new L.Mesh(
       new L.BufferGeometry(), new L.MeshPhongMaterial({ color: Film.LOOP }));
     this.scene.add(...this.parts, this.tube);
-    this.camera.position.fromArray(eye).normalize(); // at distance L: beyond any film
+    this.camera.position.fromArray(eye).setLength(size); // beyond any film
     this.controls = new L.OrbitControls(this.camera, canvas);
     this.controls.minZoom = 0.5;
     this.controls.maxZoom = 50;
@@ -56,7 +58,7 @@ class Film {
     const corners = Array.from(mesh.loop, (v) => new L.Vector3().fromArray(x, 3 * v));
     const wire = new L.CatmullRomCurve3(corners, true);
     this.tube.geometry.dispose();
-    this.tube.geometry = new L.TubeGeometry(wire, 2 * corners.length, Film.TUBE, 12, true);
+    this.tube.geometry = new L.TubeGeometry(wire, 2 * corners.length, this.tubeRadius, 12, true);
     this.draw();
   }
 
@@ -70,7 +72,8 @@ class Film {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     const half = 1.05 * Math.max(
-      (this.halfSize[0] + Film.TUBE) / width, (this.halfSize[1] + Film.TUBE) / height);
+      (this.halfSize[0] + this.tubeRadius) / width,
+      (this.halfSize[1] + this.tubeRadius) / height);
     Object.assign(this.camera, {
       left: -half * width, right: half * width, top: half * height, bottom: -half * height,
     });

@@ -4,7 +4,8 @@ const gallery = readGallery(document.getElementById("data"));
 const all = curves(gallery);
 const find = (id) => document.getElementById(id);
 const several = gallery.runs.length > 1;
-const load = QUANTITIES.find(({ key }) => key === gallery.load);
+const quantities = QUANTITIES[gallery.kind];
+const load = quantities.find(({ key }) => key === gallery.load);
 let shown = null; // { curve, place }: place is the row's number in its run
 let film = null;
 
@@ -23,7 +24,7 @@ function show(curve, place) {
   find("place").value = place - curve.first;
   find("row").replaceChildren(
     line("run", curve.run.name),
-    ...QUANTITIES.map(({ key, label, unit }) => line(label, row[key], unit)),
+    ...quantities.map(({ key, label, unit }) => line(label, row[key], unit)),
   );
   find("special").textContent = aboutSpecial(curve.run.special[row.special]);
 }
@@ -99,7 +100,7 @@ function groupName(alike) {
 
 function makeChoice(axis) {
   const choice = find(axis);
-  for (const { key, label, axis: offered } of QUANTITIES) {
+  for (const { key, label, axis: offered } of quantities) {
     if (offered === axis) choice.add(new Option(label, key));
   }
   choice.addEventListener("change", () => {
@@ -110,7 +111,7 @@ function makeChoice(axis) {
 
 function setAxes() {
   const [x, y] = ["x", "y"].map((axis) =>
-    QUANTITIES.find(({ key }) => key === find(axis).value));
+    quantities.find(({ key }) => key === find(axis).value));
   diagram.setAxes(x, y);
   if (shown) diagram.mark(shown.curve.run.rows[shown.place]);
 }

@@ -1,7 +1,7 @@
 """Renders: stills, contact sheets, animations of films, always in a child process.
 
     drawing.py   `draw_shapes` starts the child, which begins in __main__.py
-    choice.py    which shapes of a run; fields.py: what a film can be coloured by
+    choice.py    which shapes of a run; fields.py: what a shape can be coloured by
     pictures.py  the kinds of pictures; scene.py: the window VTK draws in; colours.py;
     pages.py     captions, colour bars, sheets, GIFs
 

@@ -9,7 +9,7 @@ from eulerplateau.pictures.render import STILLS, TURN, RunPictures
 
 if __name__ == "__main__":
     folder, kind, colour, *steps = sys.argv[1:]
-    pictures = RunPictures.read(Path(folder), [int(step) for step in steps], colour)
+    pictures = RunPictures.read(Path(folder), [int(step) for step in steps], colour or None)
     if kind == STILLS:
         pictures.stills()
     elif kind == TURN:

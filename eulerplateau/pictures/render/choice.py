@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eulerplateau.errors import SpecError
-from eulerplateau.runs import Run, distinct_steps
+from eulerplateau.runs import Run
 
 
 def chosen_steps(run: Run, steps: Sequence[int], loads: Sequence[float]) -> list[int]:
@@ -16,7 +16,7 @@ def chosen_steps(run: Run, steps: Sequence[int], loads: Sequence[float]) -> list
     With neither it is one step per distinct state, or the last if none converged.
     """
     if not steps and not loads:
-        return distinct_steps(run.rows) or [run.rows[-1].step]
+        return run.distinct_steps() or [run.rows[-1].step]
     wanted = set(_known(run, steps)).union(*(_nearest(run, load) for load in loads))
     return [row.step for row in run.rows if row.step in wanted]
 

@@ -15,7 +15,7 @@ from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.mesh import Shape
 from eulerplateau.mesh.drawing import BACK, FRONT, LOOP
-from eulerplateau.pictures.figure import load_matplotlib
+from eulerplateau.pictures.figure import FieldLook, load_matplotlib
 
 SIDES, SOAP = "sides", "soap"
 _GREY_FRONT, _GREY_BACK = np.full(3, 0.93), np.full(3, 0.72)
@@ -28,14 +28,6 @@ _AMBIENT_OF_FIELD = 0.75
 _THIN = 0.38
 # Nothing in units of L is coloured on a finer scale than this: it would show rounding.
 _FINEST = 1e-6
-_SIGNED = ("angle_defect", "kappa_n", "kappa_g")
-_LABELS = {
-    "angle_defect": "angle defect",
-    "contact_angle": "contact angle",
-    "kappa": r"$\kappa L$",
-    "kappa_n": r"$\kappa_n L$",
-    "kappa_g": r"$\kappa_g L$",
-}
 
 
 @dataclass(frozen=True)
@@ -44,20 +36,15 @@ class Scale:
 
     Attributes
     ----------
-    name : str, the field
+    label : str, the field as it is written beside the colour bar
     low, high : float; values beyond take the colours of the ends
     colours : str, matplotlib's name of the map: diverging about 0, or sequential
     """
 
-    name: str
+    label: str
     low: float
     high: float
     colours: str
-
-    @property
-    def label(self) -> str:
-        """The field as it is written beside the colour bar."""
-        return _LABELS.get(self.name, self.name.replace("_", " "))
 
     def rgb(self, values: FloatArray) -> FloatArray:
         """Return the colours (n, 3) of `values` (n,)."""
@@ -69,21 +56,24 @@ class Scale:
         return colours
 
 
-def scale_of(name: str, fields: Sequence[FloatArray]) -> Scale:
+def scale_of(
+    name: str, fields: Sequence[FloatArray], look: FieldLook | None = None
+) -> Scale:
     """Return the scale for the values of a field (n_v,) on several shapes, NaN left out.
 
-    It spans the middle 90 % of them on every shape, symmetrically for a curvature that
-    has a sign. Raises SpecError if there is no finite value.
+    It spans the middle 90 % of them on every shape, symmetrically for one that has a sign.
+    Raises SpecError if there is no finite value.
     """
+    look = look or FieldLook(name.replace("_", " "))
     finite = [values[np.isfinite(values)] for values in fields]
     ranges = [np.percentile(values, [5, 95]) for values in finite if len(values)]
     if not ranges:
         raise SpecError("--colour", f"{name} has no finite value on these shapes")
     low, high = float(np.min(ranges)), float(np.max(ranges))
-    if name in _SIGNED:
+    if look.signed:
         half = max(-low, high, _FINEST)
-        return Scale(name, -half, half, "coolwarm")
-    return Scale(name, low, max(high, low + _FINEST), "viridis")
+        return Scale(look.label, -half, half, "coolwarm")
+    return Scale(look.label, low, max(high, low + _FINEST), "viridis")
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Have shapes of a run rendered, as stills or animations, by a child process.
 
-The film is blue on the side its normal points to and orange on the other, so that it is
+A film is blue on the side its normal points to and orange on the other, so that it is
 seen to turn over; the loop is a tube. All pictures of a run have one view and one scale.
 """
 
@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from eulerplateau.mesh.drawing import draw_in_child
-from eulerplateau.pictures.render.colours import SIDES
 
 STILLS, TURN, SWEEP = "stills", "turn", "sweep"
 # A driver that hangs is given up after this, and so much per frame.
@@ -18,12 +17,13 @@ _SECONDS, _SECONDS_PER_STEP = 120.0, {STILLS: 2.0, TURN: 60.0, SWEEP: 2.0}
 
 
 def draw_shapes(
-    folder: Path, steps: Sequence[int], kind: str = STILLS, colour: str = SIDES
+    folder: Path, steps: Sequence[int], kind: str = STILLS, colour: str | None = None
 ) -> bool:
     """Draw the shapes of `steps` in a child process; return whether all were drawn.
 
     `kind` is STILLS, TURN (an animation of each shape) or SWEEP (one of all shapes) and
-    `colour` SIDES, SOAP or a scalar field of the shape files. A child that fails or
+    `colour` SIDES, SOAP or a scalar field of the shape files; by default what such runs
+    are coloured by, films by SIDES. A child that fails or
     crashes is logged and never raises here.
     """
     if not steps:
@@ -31,5 +31,10 @@ def draw_shapes(
     chosen = [str(step) for step in steps]
     timeout = _SECONDS + _SECONDS_PER_STEP[kind] * len(steps)
     return draw_in_child(
-        "eulerplateau.pictures.render", str(folder), kind, colour, *chosen, timeout=timeout
+        "eulerplateau.pictures.render",
+        str(folder),
+        kind,
+        colour or "",
+        *chosen,
+        timeout=timeout,
     )

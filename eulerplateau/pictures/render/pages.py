@@ -13,7 +13,6 @@ from eulerplateau.mesh.drawing import ASPECT
 from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.pictures.render.colours import Scale
 from eulerplateau.pictures.render.scene import Pixels
-from eulerplateau.runs import BranchRow, Row
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -25,10 +24,10 @@ _PALETTE_FRAMES = 12
 _ALMOST_WHITE = 248
 
 
-def caption(row: Row) -> str:
-    """Return what is written below the shape of a row."""
+def caption(row: Any) -> str:
+    """Return what is written below the shape of a row, of a sweep or of a branch."""
     parts = [f"${row.load_name.tex} = {row.load:.6g}$"]
-    if isinstance(row, BranchRow):
+    if hasattr(row, "branch"):
         parts.append(f"branch {row.branch}")
     if not row.converged:
         parts.append("not converged")

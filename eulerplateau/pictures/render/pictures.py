@@ -9,8 +9,9 @@ from pathlib import Path
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import Shape, write_whole
-from eulerplateau.mesh.drawing import View, aligned, common_view, turning_views
-from eulerplateau.pictures.alignment import settled_runs
+from eulerplateau.mesh.drawing import View, turning_views
+from eulerplateau.pictures.kinds import Stage
+from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.render.choice import chosen_steps
 from eulerplateau.pictures.render.colours import (
     SIDES,
@@ -37,7 +38,8 @@ class RunPictures:
     Attributes
     ----------
     run : its rows; pictures go to the subfolder pictures/ of its folder
-    shapes : one per row, each turned as little as can be from the one before it
+    shapes : one per row, each turned as little as can be from the one before it, in units
+        of a loop's length
     places : the numbers of the rows to be shown
     colour : "sides" (front of the film blue, back orange), "soap" (the same, translucent)
         or a scalar field of the shape files
@@ -53,29 +55,39 @@ class RunPictures:
     scale: Scale | None
 
     @classmethod
-    def read(cls, folder: Path, steps: Sequence[int], colour: str = SIDES) -> RunPictures:
+    def read(
+        cls, folder: Path, steps: Sequence[int], colour: str | None = None
+    ) -> RunPictures:
         """Read a run, of which `steps` (at least one) are to be shown.
 
         Raises OutputError if a shape cannot be read, SpecError if there is no such step
         or field.
         """
         run = read_run(folder)
+        stage = pictures_of(run.kind).stage
+        colour = stage.colour if colour is None else colour
         wanted = chosen_steps(run, steps, [])
         places = [place for place, row in enumerate(run.rows) if row.step in wanted]
         fields = {}
         if colour not in (SIDES, SOAP):
             paths = {place: run.shape_path(run.rows[place]) for place in places}
             fields = {place: read_field(path, colour) for place, path in paths.items()}
-        scale = scale_of(colour, list(fields.values())) if fields else None
-        return cls(run, _followed(run), tuple(places), colour, fields, scale)
+        look = stage.fields.get(colour)
+        scale = scale_of(colour, list(fields.values()), look) if fields else None
+        return cls(run, _followed(run, stage), tuple(places), colour, fields, scale)
+
+    @property
+    def stage(self) -> Stage:
+        """How the run's shapes are seen."""
+        return pictures_of(self.run.kind).stage
 
     def stills(self) -> None:
         """Draw shape_*.png and, of several, a contact sheet, sheet.png.
 
         The view is that of the whole run, so that pictures made at different times compare.
         """
-        shapes = aligned(self.shapes)
-        view = common_view(shapes)
+        shapes = self.stage.aligned(self.shapes)
+        view = self.stage.view(shapes)
         images = []
         with Scene(_WIDTH) as scene:
             for place in self.places:
@@ -86,7 +98,7 @@ class RunPictures:
 
     def turns(self) -> None:
         """Draw turn_*.gif: each shape once around, all in one scale."""
-        shapes = aligned(self.shapes)
+        shapes = self.stage.aligned(self.shapes)
         views = turning_views(shapes, _TURN_FRAMES)
         with Scene(_FRAME_WIDTH) as scene:
             for place in self.places:
@@ -97,7 +109,7 @@ class RunPictures:
 
     def sweep(self) -> None:
         """Draw sweep.gif: the shapes in sequence, held where a branch or leg ends."""
-        view = common_view(self.shapes)
+        view = self.stage.view(self.shapes)
         ends = {series.last for series in self.run.series} | {self.places[-1]}
         with Scene(_FRAME_WIDTH) as scene:
             frames = [
@@ -122,14 +134,14 @@ class RunPictures:
             pictures.mkdir(exist_ok=True)
         except OSError as error:
             raise OutputError(pictures, f"cannot be made: {error.strerror}") from None
-        coloured = name if self.colour == SIDES else f"{name}_{self.colour}"
+        coloured = name if self.colour == self.stage.colour else f"{name}_{self.colour}"
         write_whole(pictures / f"{coloured}.{suffix}", content)
 
 
-def _followed(run: Run) -> tuple[Shape, ...]:
+def _followed(run: Run, stage: Stage) -> tuple[Shape, ...]:
     """Return the shapes of a run, each turned as little as can be from the one before."""
     found = run.shapes()
-    (x,) = settled_runs([(run.series, found.x)], found.loop)
+    (x,) = stage.settled([(run.series, found.x / stage.size)], found.loop)
     return tuple(
         Shape(own, found.triangles(place), found.loop) for place, own in enumerate(x)
     )

@@ -18,6 +18,13 @@ from eulerplateau.pictures.figure import save
 from eulerplateau.pictures.planar import plot_energy, plot_gallery
 from eulerplateau.runs import Row, Run, load_run, read_run, run_sweep
 from scripts.studies.common import ROOT, markdown_table
+from scripts.studies.figures.cells import (
+    draw_geometry,
+    draw_phases,
+    draw_spreading,
+    draw_traction,
+)
+from scripts.studies.figures.numbers import Number
 
 # Integral of |kappa_n| ds up to which a film is flat, as in scripts/transitions.
 FLAT = 1e-3
@@ -39,23 +46,9 @@ NOT_COMPUTED = (
     ("fig:frenet, fig:turning-tangents, fig:contact", "drawings that explain a notion"),
     ("fig:mora, fig:selection", "photographs of experiments"),
     ("fig:cell", "micrographs of cells"),
-    ("fig:spreading", "measurements of cells, and the contractile film model"),
-    (
-        "fig:geometry, fig:schematic, fig:traction, fig:phase",
-        "the contractile film model of cells, which this script does not have",
-    ),
+    ("fig:schematic", "three of the shapes of fig:phase and [cells](cells.md)"),
+    ("the circles of fig:spreading", "measurements of cells, which are not ours"),
 )
-
-
-@dataclass(frozen=True)
-class Number:
-    """A number the paper gives, and what is found here, with uncertainties if any."""
-
-    name: str
-    paper: float
-    here: float
-    here_error: float = 0.0
-    paper_error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -74,6 +67,10 @@ def main_figures() -> dict[str, Figure]:
         "twisting": Figure("fig:twisting", draw_twisting),
         "enneper": Figure("fig:enneper", draw_enneper),
         "bifurcation": Figure("fig:bifurcation", draw_bifurcation),
+        "cell-spreading": Figure("fig:spreading", draw_spreading),
+        "cell-geometry": Figure("fig:geometry", draw_geometry),
+        "cell-traction": Figure("fig:traction", draw_traction),
+        "cell-phases": Figure("fig:phase", draw_phases),
     }
 
 
@@ -88,7 +85,8 @@ def main_figures() -> dict[str, Figure]:
 def main(names: tuple[str, ...], out: Path) -> None:
     """Make the figures NAME, by default all, and print paper / here / difference.
 
-    Names: planar-gallery, planar-energy, twisting, enneper, bifurcation.
+    Names: planar-gallery, planar-energy, twisting, enneper, bifurcation, cell-spreading,
+    cell-geometry, cell-traction, cell-phases.
     """
     figures = main_figures()
     unknown = [name for name in names if name not in figures]

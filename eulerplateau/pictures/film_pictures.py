@@ -1,0 +1,121 @@
+"""What pictures show of films: their curvature, the waist's twist, energies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from math import pi
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh.drawing import EYE, aligned, common_view
+from eulerplateau.pictures.alignment import settled_runs
+from eulerplateau.pictures.figure import ABS_KAPPA_N, MINUS_K, FieldLook, Portraits
+from eulerplateau.pictures.kinds import KindPictures, Stage
+from eulerplateau.pictures.panels import Panel, panel
+from eulerplateau.pictures.vector_film import draw_film, room
+from eulerplateau.runs import Branch, Row, Series, energy_above, is_planar, read_shape
+
+# A planar film's twist jumps by half turns where its rim passes through itself.
+_JUMP = 90.0
+
+_SWEEP = (
+    panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),
+    panel(MINUS_K, lambda row: -row.total_gauss_curvature),
+    panel("waist twist (deg)", lambda row: abs(row.waist_twist), ticks=(0, 90, 180)),
+    panel("short / long axis", lambda row: row.aspect, limits=(0, 1.05)),
+)
+
+
+def _over_disk(row: Row) -> float:
+    return row.energy / (row.sigma_hat / (4 * pi) + 4 * pi**2)
+
+
+_PLOTS: dict[str, tuple[Panel, ...]] = {
+    "diagram": (panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),),
+    "energy": (
+        panel(r"$E\,L/\alpha$", lambda row: row.energy),
+        panel(r"$E\,/\,(\hat\sigma/4\pi+4\pi^2)$, flat disk: 1", _over_disk),
+    ),
+    "curvature": (panel(MINUS_K, lambda row: -row.total_gauss_curvature),),
+    "eigenvalue": (
+        panel(
+            r"smallest eigenvalue $\lambda_1 L^4/\alpha$",
+            lambda row: row.lowest_eigenvalue,
+            logarithmic=True,
+        ),
+    ),
+}
+
+
+def _branches(branches: Sequence[Branch]) -> tuple[Panel, ...]:
+    """Return the panels of branches.png.
+
+    The loop's total normal curvature is the order parameter of the paper, in which mirror
+    images coincide; in the twist of the film's normal across the waist they do not.
+    """
+    excess = energy_above(branches[0])
+
+    def twists(series: Series) -> Sequence[Any]:
+        return signed_twists(cast(Branch, series))
+
+    return (
+        panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),
+        Panel("waist twist (deg)", twists, jump=_JUMP, solid_only=True),
+        Panel(r"$(E-E_0)\,L/\alpha$", lambda branch: [excess(branch)], solid_only=True),
+    )
+
+
+def signed_twists(branch: Branch) -> list[FloatArray]:
+    """Return the waist twist (n,) in degrees, of both sides if the branch is planar.
+
+    A planar film is its own mirror image, and its twist, 0 or a number of half turns, has
+    no sign: on a branch that leaves the plane it is that of the side the branch is on.
+    """
+    twist = np.array([row.waist_twist for row in branch.rows])
+    planar = np.array([is_planar(row) for row in branch.rows])
+    if planar.all():
+        return [np.abs(twist), -np.abs(twist)]
+    bent = np.argmax([row.abs_kappa_n for row in branch.rows])
+    side = np.sign(twist[bent])
+    return [np.where(planar, side * np.abs(twist), twist)]
+
+
+def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
+    """Return films as vectors, turned to lie alike, seen from one side."""
+    films = [aligned([read_shape(path) for path in own]) for own in paths]
+    every = [shape for shapes in films for shape in shapes]
+    eye = common_view(every).eye
+    half = room(every, eye)
+    draw = [
+        [partial(draw_film, shape=shape, eye=eye, half=half) for shape in shapes]
+        for shapes in films
+    ]
+    return Portraits(draw, half)
+
+
+_FIELDS = {
+    "angle_defect": FieldLook("angle defect", signed=True),
+    "contact_angle": FieldLook("contact angle"),
+    "kappa": FieldLook(r"$\kappa L$"),
+    "kappa_n": FieldLook(r"$\kappa_n L$", signed=True),
+    "kappa_g": FieldLook(r"$\kappa_g L$", signed=True),
+}
+
+FILM = KindPictures(
+    sweep=_SWEEP,
+    portrayed=False,
+    banded=lambda row: not is_planar(row),
+    band="not planar",
+    branches=_branches,
+    plots=_PLOTS,
+    has_onset=True,
+    numbered=lambda row: float(row.abs_kappa_n),
+    flat=is_planar,
+    portraits=_portraits,
+    state=lambda row: "",
+    stage=Stage(EYE, 1.0, settled_runs, aligned, common_view, "sides", _FIELDS),
+)

@@ -1,0 +1,155 @@
+"""Shapes in lines above a diagram, each with the number it has there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eulerplateau.pictures.figure import DrawShape, Portraits
+from eulerplateau.pictures.kinds import KindPictures
+from eulerplateau.pictures.panels import Band, style
+from eulerplateau.runs import Run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import FigureBase
+    from numpy.typing import NDArray
+
+_PER_LINE = 6
+# A curve steeper than this, in shares of its panel, has its numbers beside it.
+_STEEP = 1.5
+# Inches.
+_TITLE, _NOTE = 0.25, 0.3
+
+
+@dataclass(frozen=True)
+class PortraitLines:
+    """Shapes in lines, each line with the number of its run, all at one scale.
+
+    Attributes
+    ----------
+    lines : the number of a run, and of its shapes the rows with what draws them
+    portraits : the scale, and what is written
+    kind : what the pictures show of such runs
+    """
+
+    lines: list[tuple[int, Sequence[tuple[Any, DrawShape]]]]
+    portraits: Portraits
+    kind: KindPictures
+
+    @property
+    def columns(self) -> int:
+        """How many shapes there are in the longest line."""
+        return max(len(line) for _, line in self.lines)
+
+    def height(self, width: float) -> float:
+        """Return the height (inches) in which shapes of this width have room."""
+        half, title = self.portraits.half, self.portraits.lines * _TITLE
+        shape = min(width / self.columns, self.portraits.widest) * half[1] / half[0]
+        note = _NOTE if self.portraits.note else 0.0
+        return len(self.lines) * (shape + title) + note
+
+    def draw(self, figure: FigureBase) -> None:
+        """Draw the shapes, numbered through all runs, with their loads above them."""
+        axes = figure.subplots(len(self.lines), self.columns, squeeze=False)
+        count = 0
+        for (number, line), cells in zip(self.lines, axes, strict=True):
+            for ax in cells:
+                ax.set_axis_off()
+            for ax, (row, draw) in zip(cells, line, strict=False):
+                count += 1
+                draw(ax)
+                place = f"${row.load_name.tex}={row.load:.5g}$"
+                state = self.kind.state(row)
+                words = f"{state}\n{place}" if state else place
+                title = rf"$\bf{{{count}}}$   {words}"
+                ax.set_title(title, fontsize=7.5, color=style(number)["color"], pad=3)
+        if self.portraits.note:
+            figure.supxlabel(self.portraits.note, fontsize=7.5, color="0.3")
+
+
+def portrait_lines(
+    runs: Sequence[Run], shown: Sequence[Sequence[Any]], kind: KindPictures
+) -> PortraitLines:
+    """Return the shapes of the rows `shown` of each run, at least one in all."""
+    paths = [
+        [run.shape_path(row) for row in rows] for run, rows in zip(runs, shown, strict=True)
+    ]
+    portraits = kind.portraits(paths)
+    lines = [
+        (number, line)
+        for number, (rows, draw) in enumerate(zip(shown, portraits.draw, strict=True))
+        for line in _lines(list(zip(rows, draw, strict=True)))
+    ]
+    return PortraitLines(lines, portraits, kind)
+
+
+def number_shapes(
+    panels: NDArray[Any],
+    window: Band | None,
+    runs: Sequence[Run],
+    shown: Sequence[Sequence[Any]],
+    kind: KindPictures,
+) -> None:
+    """Mark the shapes in the first panel, or in its enlargement where that shows them.
+
+    `panels` are its axes (1 or 2,), the second those of the enlarged `window` of loads.
+    """
+    from matplotlib.patheffects import withStroke
+
+    count = 0
+    for number, (run, rows) in enumerate(zip(runs, shown, strict=True)):
+        for row in rows:
+            count += 1
+            inside = window is not None and window[0] <= row.load <= window[1]
+            ax = panels[1 if inside else 0]
+            place = (row.load, kind.numbered(row))
+            colour = style(number)["color"]
+            ax.plot(*place, "o", color=colour, markersize=7, fillstyle="none", zorder=5)
+            x, y, align = _beside(ax, row, run, number % 2 == 1, kind)
+            ax.annotate(
+                str(count),
+                place,
+                xytext=(x, y),
+                textcoords="offset points",
+                ha=align,
+                va="top" if y < 0 else "bottom",
+                fontsize=8,
+                fontweight="bold",
+                color=colour,
+                zorder=6,
+                path_effects=[withStroke(linewidth=2.5, foreground="white")],
+            )
+
+
+def _lines(
+    shapes: Sequence[tuple[Any, DrawShape]],
+) -> list[Sequence[tuple[Any, DrawShape]]]:
+    """Break the shapes of a run into lines of nearly equal length."""
+    count = max(-(-len(shapes) // _PER_LINE), 1)
+    length = max(-(-len(shapes) // count), 1)
+    return [shapes[first : first + length] for first in range(0, len(shapes), length)]
+
+
+def _beside(
+    ax: Axes, row: Any, run: Run, below: bool, kind: KindPictures
+) -> tuple[float, float, str]:
+    """Return where a number is clear of the curve: offset in points, and alignment.
+
+    That of every other run is `below` its curve, for runs that coincide.
+    """
+    if kind.flat(row):
+        return 0, -6, "center"
+    place = run.rows.index(row)
+    before, after = (
+        run.rows[i] for i in (max(place - 1, 0), min(place + 1, len(run.rows) - 1))
+    )
+    climb = (kind.numbered(after) - kind.numbered(before)) / np.ptp(ax.get_ylim())
+    way = (after.load - before.load) / np.ptp(ax.get_xlim())
+    if abs(climb) <= _STEEP * abs(way):
+        return 0, -6 if below else 5, "center"
+    right = (climb * way < 0) != below
+    return 5 if right else -5, -3 if below else 3, "left" if right else "right"

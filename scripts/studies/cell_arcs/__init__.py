@@ -1,0 +1,1 @@
+"""Regular cells with line tension as their bending rigidity vanishes, against arcs."""

@@ -159,14 +159,16 @@ def test_command_line_refuses_before_any_run_computes(mesh, tmp_path):
         (tmp_path / f"{name}.toml").write_text(text)
     words = [tmp_path / "a.toml", tmp_path / "b.toml", "--no-pictures", "--quiet"]
     assert run_here("sweep", tmp_path / "b.toml", *words[2:]).returncode == 0
-    changed = run_here("sweep", *words, "--set", "start.seed=7")
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.toml").write_text(f"{text}[start]\nseed = 7\n")
+    changed = run_here("sweep", *words)
     assert changed.returncode == 6
     assert not (tmp_path / "a").exists()
     (line,) = changed.stderr.splitlines()
     assert "start.seed" in line
     assert "--overwrite" in line
-    assert run_here("sweep", *words, "--set", "start.seed=7", "--overwrite").returncode == 0
-    again = run_here("sweep", *words[:3], "--set", "start.seed=7")
+    assert run_here("sweep", *words, "--overwrite").returncode == 0
+    again = run_here("sweep", *words[:3])
     assert again.returncode == 0
     assert again.stderr.count("finished before") == 2
 

@@ -151,10 +151,14 @@ def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_commands_of_every_page_have_the_options_they_are_given(page: Path) -> None:
-    for _, name, *arguments in command_lines(page, "eulerplateau"):
+    for _, *words in command_lines(page, "eulerplateau"):
+        command, *arguments = commands, *words
+        while isinstance(command, click.Group) and arguments:
+            context = click.Context(command)
+            command = command.get_command(context, arguments.pop(0)) or command
         options = {
             option
-            for parameter in commands.commands[name].params
+            for parameter in command.params
             if isinstance(parameter, click.Option)
             for option in (*parameter.opts, *parameter.secondary_opts)
         }

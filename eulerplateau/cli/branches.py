@@ -7,12 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.overrides import (
-    OVERWRITE,
-    before,
-    load_single,
-    single_values,
-)
+from eulerplateau.cli.batch import OVERWRITE, before
+from eulerplateau.cli.overrides import load_single, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:

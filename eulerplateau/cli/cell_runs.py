@@ -3,21 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.overrides import (
-    OVERWRITE,
-    RESUME,
-    before,
-    load_single,
-    parse_setting,
-    refused,
-    single_values,
-)
-from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
+from eulerplateau.cli.batch import OVERWRITE, RESUME, before, carried_out
+from eulerplateau.cli.overrides import load_single, parse_setting, single_values
+from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:
     from eulerplateau.runs import CellBranchRow, CellRow, CellRun, CellRunSpec
@@ -67,23 +61,14 @@ def sweep(
     from eulerplateau.runs import cell_conflict, load_cell_run, planned
 
     values = [parse_setting(text) for text in settings]
-    runs = planned(list(specs), values, out, load_cell_run)
-    if not overwrite:
-        code = refused(cell_conflict(run, folder, resume=resume) for run, folder in runs)
-        if code:
-            return code
-    code = 0
-    for spec, folder in runs:
-        try:
-            result = _swept(spec, folder, quiet, resume, overwrite)
-        except EulerPlateauError as error:
-            # One bad run of many must not cost the others.
-            click.echo(f"eulerplateau: {folder}: {error}", err=True)
-            code = max(code, error.exit_code)
-            continue
+
+    def one(spec: CellRunSpec, folder: Path) -> int:
+        result = _swept(spec, folder, quiet, resume, overwrite)
         drawn = ["sweep.csv", "sweep.pvd", *_drawn(folder, pictures, "diagram.png")]
-        code = max(code, _report(result, len(spec.pairs()), drawn, quiet))
-    return code
+        return _report(result, len(spec.pairs()), drawn, quiet)
+
+    runs = planned(list(specs), values, out, load_cell_run)
+    return carried_out(runs, partial(cell_conflict, resume=resume), one, overwrite)
 
 
 def _swept(

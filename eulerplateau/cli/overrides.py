@@ -3,41 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from eulerplateau.errors import EulerPlateauError
-
 S = TypeVar("S")
-
-RESUME = click.option(
-    "--resume",
-    is_flag=True,
-    help="Go on also from a run of the first of these loads. A run that was interrupted is "
-    "continued without being asked.",
-)
-OVERWRITE = click.option(
-    "--overwrite", is_flag=True, help="Replace another run that lies in the folder."
-)
-
-
-def refused(errors: Iterable[EulerPlateauError | None]) -> int:
-    """Say what stands against runs before any of them computes; return the exit code."""
-    found = [error for error in errors if error is not None]
-    for error in found:
-        click.echo(f"eulerplateau: {error}", err=True)
-    return max((error.exit_code for error in found), default=0)
-
-
-def before(folder: Path, kept: int, finished: bool) -> None:
-    """Say what an earlier call has left in a folder, if it is to be kept."""
-    if finished:
-        click.echo(f"{folder}: finished before, {kept} rows: nothing is computed", err=True)
-    elif kept:
-        click.echo(f"{folder}: goes on after {kept} rows of an earlier call", err=True)
 
 
 def parse_setting(text: str) -> tuple[str, list[Any]]:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.overrides import (
-    OVERWRITE,
-    RESUME,
-    before,
-    parse_setting,
-    refused,
-)
-from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
+from eulerplateau.cli.batch import OVERWRITE, RESUME, before, carried_out
+from eulerplateau.cli.overrides import parse_setting
+from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:
     from eulerplateau.runs import Row, RunResult, RunSpec
@@ -66,25 +62,14 @@ def sweep(
     values = [parse_setting(text) for text in settings]
     if solver is not None:
         values.append(("solver.name", [solver]))
+
+    def one(spec: RunSpec, folder: Path) -> int:
+        result = _run(spec, folder, quiet, resume, overwrite)
+        _report(result, _draw(result, pictures, render), quiet)
+        return NOT_CONVERGED_EXIT_CODE if result.failures else 0
+
     runs = planned(list(specs), values, out, load_run)
-    if not overwrite:
-        code = refused(conflict(spec, folder, resume=resume) for spec, folder in runs)
-        if code:
-            return code
-    code = 0
-    for spec, folder in runs:
-        try:
-            result = _run(spec, folder, quiet, resume, overwrite)
-        except EulerPlateauError as error:
-            # One bad run of many must not cost the others.
-            click.echo(f"eulerplateau: {folder}: {error}", err=True)
-            code = max(code, error.exit_code)
-            continue
-        drawn = _draw(result, pictures, render)
-        if result.failures:
-            code = max(code, NOT_CONVERGED_EXIT_CODE)
-        _report(result, drawn, quiet)
-    return code
+    return carried_out(runs, partial(conflict, resume=resume), one, overwrite)
 
 
 def _run(

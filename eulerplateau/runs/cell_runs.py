@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,6 +18,7 @@ from eulerplateau.runs.cell_table import CellBranchRow, CellRow
 from eulerplateau.runs.continuing import look
 from eulerplateau.runs.recording import Opening, not_converged, opened
 from eulerplateau.runs.shape_files import read_state
+from eulerplateau.runs.table import table_content
 
 SPECIAL_COLUMNS = (
     "number", "kind", "sigma_hat", "ks_hat", "error", "branch", "step", "n_unstable",
@@ -119,7 +118,7 @@ def run_cell_branches(
     with opened(path, opening, describe(spec), started) as run:
         if run.finished:
             return CellRun(path, tuple(run.rows), (), run.seconds, run.kept, True)
-        write_whole(path / "special_points.csv", _table(special))
+        _write_special(path, special)
         points = explore_cell(
             cell,
             "load" if varied == "sigma_hat" else "stiffness",
@@ -144,10 +143,15 @@ def run_cell_branches(
             )
             if point.special is not None and not point.known:
                 special.append(_special(row, point.special))
-                write_whole(path / "special_points.csv", _table(special))
+                _write_special(path, special)
             run.totals |= {"points": len(run.rows), "special": len(special)}
             on_row(row)
     return CellRun(path, tuple(run.rows), tuple(special), run.seconds)
+
+
+def _write_special(path: Path, special: list[dict[str, Any]]) -> None:
+    content = table_content(SPECIAL_COLUMNS, special)
+    write_whole(path / "special_points.csv", content)
 
 
 def _special(row: CellBranchRow, special: SpecialPoint) -> dict[str, Any]:
@@ -165,11 +169,3 @@ def _special(row: CellBranchRow, special: SpecialPoint) -> dict[str, Any]:
         "breaks": "; ".join(special.symmetry.breaks),
         "keeps": "; ".join(special.symmetry.keeps),
     }
-
-
-def _table(special: list[dict[str, Any]]) -> bytes:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, SPECIAL_COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(special)
-    return text.getvalue().encode()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -25,6 +24,7 @@ from eulerplateau.runs.recording import Opening, OpenRun, make_mesh, recording
 from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape, stored_start
+from eulerplateau.runs.table import table_content
 from eulerplateau.solvers import Equilibrium, Problem
 
 SPECIAL_COLUMNS = (
@@ -78,7 +78,7 @@ def run_branches(
     with recording(spec, disk, path, opening, started) as recorder:
         if recorder.run.finished:
             return _as_it_is(recorder.run)
-        write_whole(path / "special_points.csv", _table(special))
+        _write_special(path, special)
         points = explore(
             problem,
             window,
@@ -99,7 +99,7 @@ def run_branches(
                 )
                 if point.special is not None and not point.known:
                     special.append(_special(row, point.special))
-                    write_whole(path / "special_points.csv", _table(special))
+                    _write_special(path, special)
                 on_row(row)
         finally:
             recorder.run.totals |= {"points": len(rows), "special": len(special)}
@@ -148,6 +148,11 @@ def _modes(point: FilmPoint) -> dict[str, FloatArray]:
     return {} if mode is None else {"critical_mode": mode}
 
 
+def _write_special(path: Path, special: list[dict[str, Any]]) -> None:
+    content = table_content(SPECIAL_COLUMNS, special)
+    write_whole(path / "special_points.csv", content)
+
+
 def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:
     return {
         "number": row.special,
@@ -165,11 +170,3 @@ def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:
         "breaks": "; ".join(special.symmetry.breaks),
         "keeps": "; ".join(special.symmetry.keeps),
     }
-
-
-def _table(special: list[dict[str, Any]]) -> bytes:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, SPECIAL_COLUMNS, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(special)
-    return text.getvalue().encode()

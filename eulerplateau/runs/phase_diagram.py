@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import time
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -32,6 +30,7 @@ from eulerplateau.runs.cell_spec import CellRunSpec, PhaseDiagramSettings
 from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.phases import REGIONS, Line, PhaseDiagram
 from eulerplateau.runs.recording import Opening, opened
+from eulerplateau.runs.table import table_content
 from eulerplateau.solvers import one_thread
 
 # Points of the fold, and how often a line's beginning is halved.
@@ -194,7 +193,7 @@ def _table(points: dict[str, list[Transition]]) -> bytes:
         for name, found in points.items()
         for point in found
     ]
-    return _csv(LINE_COLUMNS, rows)
+    return table_content(LINE_COLUMNS, rows)
 
 
 def _special_table(n: int, special: dict[str, tuple[float, float]]) -> bytes:
@@ -204,12 +203,4 @@ def _special_table(n: int, special: dict[str, tuple[float, float]]) -> bytes:
     ]
     if n > 2:
         rows.append({"point": "star without protrusion", "sigma_hat": _sigma_p(n)})
-    return _csv(("point", "sigma_hat", "ks_hat"), rows)
-
-
-def _csv(columns: Sequence[str], rows: Sequence[dict[str, Any]]) -> bytes:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, columns, lineterminator="\n", restval="")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue().encode()
+    return table_content(("point", "sigma_hat", "ks_hat"), rows)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.errors import ConflictError
+from eulerplateau.errors import ConflictError, EulerPlateauError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.runs.continuing import look
@@ -116,6 +116,8 @@ def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictErro
         look(path, describe(spec, make_mesh(spec)), "sweep", Row, load, loads)
     except ConflictError as error:
         return error
+    except EulerPlateauError:
+        pass  # whatever it is, the run says it when its turn comes
     return None
 
 

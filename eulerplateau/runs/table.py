@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -91,6 +93,15 @@ class RowWriter:
                 self._file.truncate(start)
             problem = f"row cannot be written: {error.strerror}"
             raise OutputError(self._path, problem) from None
+
+
+def table_content(names: Sequence[str], lines: Sequence[Mapping[str, Any]]) -> bytes:
+    """Return a table of lines {column: cell} as a CSV file holds it."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, names, lineterminator="\n", restval="")
+    writer.writeheader()
+    writer.writerows(lines)
+    return text.getvalue().encode()
 
 
 def read_rows(

@@ -1,0 +1,58 @@
+"""Several runs in a call: what stands against them first, then one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import click
+
+from eulerplateau.errors import ConflictError, EulerPlateauError
+
+S = TypeVar("S")
+
+RESUME = click.option(
+    "--resume",
+    is_flag=True,
+    help="Go on also from a run of the first of these loads. A run that was interrupted is "
+    "continued without being asked.",
+)
+OVERWRITE = click.option(
+    "--overwrite", is_flag=True, help="Replace another run that lies in the folder."
+)
+
+
+def carried_out(
+    runs: Sequence[tuple[S, Path]],
+    against: Callable[[S, Path], ConflictError | None],
+    one: Callable[[S, Path], int],
+    overwrite: bool,
+) -> int:
+    """Carry out runs, each by `one`, into their folders; return the worst exit code.
+
+    Unless runs that lie there are to be overwritten, nothing is computed if anything stands
+    `against` a run. What is wrong with one run does not cost the others.
+    """
+    found = [] if overwrite else [against(*run) for run in runs]
+    conflicts = [error for error in found if error is not None]
+    for error in conflicts:
+        click.echo(f"eulerplateau: {error}", err=True)
+    if conflicts:
+        return max(error.exit_code for error in conflicts)
+    code = 0
+    for spec, folder in runs:
+        try:
+            code = max(code, one(spec, folder))
+        except EulerPlateauError as error:
+            click.echo(f"eulerplateau: {folder}: {error}", err=True)
+            code = max(code, error.exit_code)
+    return code
+
+
+def before(folder: Path, kept: int, finished: bool) -> None:
+    """Say what an earlier call has left in a folder, if it is to be kept."""
+    if finished:
+        click.echo(f"{folder}: finished before, {kept} rows: nothing is computed", err=True)
+    elif kept:
+        click.echo(f"{folder}: goes on after {kept} rows of an earlier call", err=True)

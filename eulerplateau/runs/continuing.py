@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
+import platform
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -153,12 +154,13 @@ def only_writer(path: Path) -> Iterator[None]:
         raise OutputError(path, problem) from None
     with file:
         file.truncate(0)
-        file.write(f"process {os.getpid()} on {os.uname().nodename}\n")
+        file.write(f"process {os.getpid()} on {platform.node()}\n")
         file.flush()
         try:
             yield
         finally:
-            (path / WRITER).unlink(missing_ok=True)
+            with suppress(OSError):
+                (path / WRITER).unlink()
 
 
 def _locked(path: Path) -> TextIO:
@@ -166,7 +168,7 @@ def _locked(path: Path) -> TextIO:
     while True:
         file = path.open("a+", encoding="ascii")
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(file)
         except OSError:
             file.seek(0)
             who = file.read().strip() or "another process"
@@ -177,3 +179,14 @@ def _locked(path: Path) -> TextIO:
             if os.path.samestat(os.fstat(file.fileno()), path.stat()):
                 return file
         file.close()
+
+
+def _lock(file: TextIO) -> None:
+    """Lock a file until this process closes it; raises OSError if another has it.
+
+    Windows has no such locks: there two writers are not told of each other.
+    """
+    if sys.platform != "win32":
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

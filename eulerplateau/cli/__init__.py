@@ -21,12 +21,14 @@ from eulerplateau.cli.render import render
 from eulerplateau.cli.sweep import sweep
 from eulerplateau.errors import EulerPlateauError, OutputError
 
-_INTERRUPTED = 130
+# What shells add to a signal's number; 130 is SIGINT, 143 SIGTERM, 129 SIGHUP.
+_SIGNALLED = 128
 
 EXIT_CODES = """\b
 Exit codes: 0 all is well; 2 the specification or the arguments are wrong;
 3 the mesh is wrong; 4 a load did not converge; 5 a file could not be
-read or written; 6 the folder holds another run; 130 interrupted."""
+read or written; 6 the folder holds another run; 130, 143, 129 interrupted
+by SIGINT, SIGTERM, SIGHUP."""
 
 
 @click.group(epilog=EXIT_CODES)
@@ -49,7 +51,7 @@ commands.add_command(sweep)
 def main() -> NoReturn:
     """Run the command line; every error a user can cause is one line and an exit code."""
     logging.basicConfig(format="eulerplateau: %(message)s", level=logging.WARNING)
-    signal.signal(signal.SIGTERM, _interrupt)
+    _catch_signals()
     try:
         code = commands.main(prog_name="eulerplateau", standalone_mode=False)
     except click.exceptions.Exit as end:
@@ -57,9 +59,9 @@ def main() -> NoReturn:
     except click.ClickException as error:
         error.show()
         code = error.exit_code
-    except (click.Abort, KeyboardInterrupt):
+    except (click.Abort, KeyboardInterrupt) as end:
         _say("interrupted; what was computed is in the run folder")
-        code = _INTERRUPTED
+        code = _SIGNALLED + getattr(end.__cause__ or end, "number", signal.SIGINT)
     except EulerPlateauError as error:
         _say(str(error))
         code = error.exit_code
@@ -69,8 +71,24 @@ def main() -> NoReturn:
     sys.exit(code if isinstance(code, int) else 0)
 
 
-def _interrupt(*_: Any) -> NoReturn:
-    raise KeyboardInterrupt
+class _Signalled(KeyboardInterrupt):
+    """An interruption by another signal than that of Ctrl-C, of this number."""
+
+    number: int
+
+
+def _catch_signals() -> None:
+    """Make SIGTERM and SIGHUP interrupt as Ctrl-C does, unless they are ignored."""
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _interrupt)
+
+
+def _interrupt(number: int, _frame: Any) -> NoReturn:
+    end = _Signalled()
+    end.number = number
+    raise end
 
 
 def _say(text: str) -> None:

@@ -224,7 +224,10 @@ def test_one_bad_run_of_many_costs_the_others_nothing(spec: Path, tmp_path: Path
     assert len(read_rows(spec.with_suffix("") / "sweep.csv")) == 2
 
 
-def test_interrupted_sweep_ends_with_130_and_keeps_its_rows(spec: Path) -> None:
+@pytest.mark.parametrize(("name", "code"), [("INT", 130), ("TERM", 143), ("HUP", 129)])
+def test_interrupted_sweep_ends_with_its_code_and_keeps_its_rows(
+    spec: Path, name: str, code: int
+) -> None:
     edit(spec, "[500, 900]", "[{start = 1, stop = 3000, step = 0.1}]")
     table = spec.with_suffix("") / "sweep.csv"
     with started(command_line("sweep", "--no-pictures", "--quiet", spec)) as process:
@@ -233,9 +236,9 @@ def test_interrupted_sweep_ends_with_130_and_keeps_its_rows(spec: Path) -> None:
             assert process.poll() is None
             assert time.monotonic() < deadline
             time.sleep(0.02)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.Signals[f"SIG{name}"])
         _, said = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 130
+    assert process.returncode == code
     assert len(said.strip().splitlines()) == 1
     rows = read_rows(table)
     assert len(rows) >= 3

@@ -14,6 +14,7 @@ from unittest import mock
 from eulerplateau.cli import main
 
 Shell = subprocess.CompletedProcess[str]
+_CAUGHT = signal.SIGTERM, signal.SIGHUP
 
 
 def command_line(*words: object) -> list[str]:
@@ -38,7 +39,7 @@ def run_here(*words: object, cwd: Path | None = None) -> Shell:
     root = logging.getLogger()
     handlers, level = root.handlers[:], root.level
     root.handlers[:] = []  # so that the program brings its own, on `err`
-    on_term = signal.getsignal(signal.SIGTERM)
+    signals = {number: signal.getsignal(number) for number in _CAUGHT}
     try:
         with (
             mock.patch.object(sys, "argv", arguments),
@@ -50,7 +51,8 @@ def run_here(*words: object, cwd: Path | None = None) -> Shell:
     except SystemExit as end:
         code = int(end.code or 0)
     finally:
-        signal.signal(signal.SIGTERM, on_term)
+        for number, handler in signals.items():
+            signal.signal(number, handler)
         root.handlers[:] = handlers
         root.setLevel(level)
     return Shell(arguments, code, out.getvalue(), err.getvalue())

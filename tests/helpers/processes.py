@@ -11,6 +11,7 @@ from pathlib import Path
 
 # Seconds. Only what hangs takes so long, however busy the machine.
 PATIENCE = 600.0
+_SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 
 Process = subprocess.Popen[str]
 
@@ -26,9 +27,12 @@ def started(
 
     It has a process group of its own, so "all" includes what it started itself.
     """
-    # A signal that is ignored stays so in every child, as SIGINT does below `nohup ... &`;
-    # one that is handled, by whatever function, has its default effect there.
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    # A signal that is ignored stays so in every child, as SIGINT and SIGHUP do below
+    # `nohup ... &`; one that is handled, by whatever function, has its default effect
+    # there.
+    before = {
+        number: signal.signal(number, signal.default_int_handler) for number in _SIGNALS
+    }
     try:
         process = subprocess.Popen(
             command,
@@ -41,7 +45,8 @@ def started(
             start_new_session=True,
         )
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
     with process:  # which waits, and closes the pipes
         try:
             yield process

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import platform
 import sys
@@ -13,7 +12,7 @@ from pathlib import Path
 from typing import Any, Generic, TextIO, TypeVar
 
 from eulerplateau.errors import ConflictError, OutputError
-from eulerplateau.runs.folder import WRITER, check_is_run, shape_name
+from eulerplateau.runs.folder import WRITER, check_is_run, read_summary, shape_name
 from eulerplateau.runs.rows import Record
 from eulerplateau.runs.shape_files import is_whole_shape
 from eulerplateau.runs.table import read_rows
@@ -57,7 +56,7 @@ def look(
     only the first of them is this run, unfinished. Raises ConflictError, which names the
     keys that differ, if it is another run with rows.
     """
-    about = _about(path)
+    about = read_summary(path)
     table = path / f"{name}.csv"
     rows = _whole_rows(path, table, row_type, quantity) if table.is_file() else []
     if not rows and not _other_table(path, name):
@@ -100,14 +99,6 @@ def _flattened(prefix: str, section: Any) -> Iterator[tuple[str, Any]]:
             yield from _flattened(f"{prefix}.{key}" if prefix else key, value)
     else:
         yield prefix, section
-
-
-def _about(path: Path) -> Mapping[str, Any]:
-    try:
-        about = json.loads((path / "run.json").read_bytes())
-    except (OSError, ValueError):
-        return {}
-    return about if isinstance(about, dict) else {}
 
 
 def _other_table(path: Path, name: str) -> bool:

@@ -184,8 +184,13 @@ def _remove_run(path: Path) -> None:
 
 
 def _is_run(path: Path) -> bool:
+    return read_summary(path).items() >= _MARK.items()
+
+
+def read_summary(path: Path) -> Mapping[str, Any]:
+    """Return what the run.json of a folder says; empty if there is none or a broken one."""
     try:
         summary = json.loads((path / "run.json").read_bytes())
     except (OSError, ValueError):
-        return False
-    return isinstance(summary, dict) and summary.items() >= _MARK.items()
+        return {}
+    return summary if isinstance(summary, dict) else {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -12,7 +11,7 @@ from typing import Any
 
 from eulerplateau.errors import MissingLibraryError, OutputError
 from eulerplateau.film import SPRING_LOAD
-from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.folder import read_summary, shape_name
 from eulerplateau.runs.kinds import FILM, Kind
 from eulerplateau.runs.rows import LoadName, Record, columns
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
@@ -166,7 +165,7 @@ def read_runs(folders: Sequence[Path]) -> list[Run]:
 
 
 def _read(folder: Path) -> Run:
-    about = _about(folder)
+    about = read_summary(folder)
     kind = _kind_of(about)
     column = kind.load(about).column
     rows: Sequence[Record]
@@ -191,14 +190,6 @@ def _over(run: Run, column: str | None) -> Run:
         problem = f"varies {run.load.text}, another run something else: show them apart"
         raise OutputError(run.folder, problem)
     return replace(run, rows=tuple(replace(row, quantity=column) for row in run.rows))
-
-
-def _about(folder: Path) -> Mapping[str, Any]:
-    try:
-        about = json.loads((folder / "run.json").read_bytes())
-    except (OSError, ValueError):
-        return {}
-    return about if isinstance(about, dict) else {}
 
 
 def _kind_of(about: Mapping[str, Any]) -> Kind:

@@ -19,7 +19,6 @@ from eulerplateau.branches.point import (
     BranchPoint,
     Direction,
     StepControl,
-    coefficients_of,
     correct,
     inner,
     make_direction,
@@ -80,7 +79,7 @@ def _kept(point: BranchPoint, after: BranchPoint, control: StepControl) -> Direc
     model = after.model
     if len(point.model.gradient) == len(model.gradient):
         return point.direction
-    coefficients = coefficients_of(model, point.direction.displacement)
+    coefficients = model.coefficients(point.direction.displacement)
     return make_direction(model, coefficients, point.direction.rate, control)
 
 

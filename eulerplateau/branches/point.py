@@ -222,15 +222,7 @@ def make_direction(
 
 def parameter_slope(family: Family, energy: LoopEnergy, model: TangentModel) -> FloatArray:
     """Return b = dg/dparameter (m,), g the model's gradient."""
-    rate = energy.rate(family.parameter, model.x)
-    slope: FloatArray = model.basis.T @ (rate.ravel() / model.scale)
-    return slope
-
-
-def coefficients_of(model: TangentModel, displacement: FloatArray) -> FloatArray:
-    """Return the tangent coefficients (m,) of a displacement (n, d)."""
-    found: FloatArray = model.basis.T @ (displacement.ravel() * model.scale)
-    return found
+    return model.slope(energy.rate(family.parameter, model.x))
 
 
 def _bordered(
@@ -241,6 +233,6 @@ def _bordered(
     system = np.empty((m + 1, m + 1))
     system[:m, :m] = model.hessian
     system[:m, m] = slope
-    system[m, :m] = coefficients_of(model, direction.displacement)
+    system[m, :m] = model.coefficients(direction.displacement)
     system[m, m] = direction.rate / control.unit**2
     return system

@@ -149,7 +149,7 @@ def branches_from(special: SpecialPoint, control: StepControl) -> Iterator[Branc
     model = special.point.model
     away = special.point.direction
     if not special.arrived:
-        coefficients = model.basis.T @ (special.mode.ravel() * model.scale)
+        coefficients = model.coefficients(special.mode)
         away = make_direction(model, coefficients, 0.0, control)
     for direction in (away, away.reversed()):
         found = _step_along(special.point, direction, _SWITCHING_STEP, control)

@@ -5,11 +5,9 @@ from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy, Term as 
 from .equal_edges import EqualEdges as EqualEdges
 from .free_bending import FreeBending as FreeBending
 from .lengths import (
-    LengthMetric as LengthMetric,
     Lengths as Lengths,
     Unconstrained as Unconstrained,
     close_with_lengths as close_with_lengths,
-    length_metric as length_metric,
     project_lengths as project_lengths,
 )
 from .line_tension import LineTension as LineTension
@@ -27,4 +25,10 @@ from .motions import (
     remove_sliding as remove_sliding,
     rigid_motions as rigid_motions,
     sliding as sliding,
+)
+from .turns import (
+    EdgeTurns as EdgeTurns,
+    LengthMetric as LengthMetric,
+    edge_turns as edge_turns,
+    length_metric as length_metric,
 )

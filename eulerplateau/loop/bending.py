@@ -35,6 +35,10 @@ class Bending(Term):
         """Return 2 B (n, n)."""
         return 2 * self.loop.bending_matrix
 
+    def edge_hessian(self) -> FloatArray:
+        """Return the second derivative by the edges (n, n)."""
+        return 2 * self.loop.edge_bending_matrix
+
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the change of a quadratic form: its gradient half-way times the step."""
         return float(np.vdot(step, self.loop.bending_force(x + 0.5 * step)))

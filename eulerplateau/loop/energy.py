@@ -15,6 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.turns import EdgeTurns
 
 
 class Constraint(Protocol):
@@ -31,6 +32,15 @@ class Constraint(Protocol):
 
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return the nearest loop (n, d) with c = 0, to rounding; None if it is lost."""
+
+    def turns(self, x: FloatArray) -> EdgeTurns | None:
+        """Return the turns of edges by which it is kept, if it keeps each edge's length."""
+
+    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+        """Return the second derivative (n,) of tensions . c by each edge, if it has turns.
+
+        The same number for all coordinates of an edge.
+        """
 
 
 class Term(ABC):
@@ -54,6 +64,14 @@ class Term(ABC):
 
         It is one matrix (n, n) for all coordinates, or a full one (d n, d n).
         """
+
+    def edge_hessian(self) -> FloatArray | None:
+        """Return the second derivative by the edges e_v (n, n), all coordinates alike.
+
+        None of a term that is not the same quadratic form of the edges everywhere. By
+        positions such a form has lost digits: its entries are larger by 1 / s^2.
+        """
+        return None
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the term at x + step less that at x, as precise as the difference.
@@ -119,6 +137,23 @@ class LoopEnergy:
         """
         parts = [term.hessian(x) for term in self.terms.values()]
         return _summed([*parts, self.constraint.stiffness(x, tensions)], len(x))
+
+    def split_hessian(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the same in two parts, of a loop that keeps its edges' lengths.
+
+        What is no form of the edges by positions, as `hessian` is; the rest by edges.
+        """
+        by_edges = np.diag(self.constraint.edge_stiffness(tensions))
+        parts = []
+        for term in self.terms.values():
+            form = term.edge_hessian()
+            if form is None:
+                parts.append(term.hessian(x))
+            else:
+                by_edges += form
+        return _summed(parts, len(x)), by_edges
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the energy at x + step less that at x, as precise as the difference."""

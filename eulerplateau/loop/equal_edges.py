@@ -79,6 +79,13 @@ class EqualEdges:
                 return None
         return x if error < _SMALL else None
 
+    def turns(self, x: FloatArray) -> None:
+        """Return None: edges may grow together."""
+
+    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+        """Return nothing: there are no turns to say it by."""
+        return np.zeros(0)
+
     def _shift(self, edges: Edges) -> float:
         """Return how far a vertex is from its place along its side, in edges."""
         lengths = edges.lengths.reshape(-1, self.per_side)

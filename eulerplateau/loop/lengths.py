@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.loop import Loop
-from eulerplateau.loop.slide_kernels import solve_lengths
+from eulerplateau.loop.turns import EdgeTurns, edge_turns, length_metric
 
 # Gauss-Newton converges quadratically: a handful of steps from a nearby shape.
 _PROJECTION_STEPS = 30
@@ -36,42 +36,6 @@ def jacobian(loop: Loop, x_loop: FloatArray) -> FloatArray:
     return rows.reshape(n, d * n)
 
 
-@dataclass(frozen=True)
-class LengthMetric:
-    """J M^-1 J^T (n_b, n_b), M = diag(<s>): how forces along the edges change lengths.
-
-    Each edge meets only its two neighbours, so that to solve with the matrix costs O(n_b)
-    (slide_kernels.py).
-
-    Attributes
-    ----------
-    directions : (n_b, d) float, e_v / s_v
-    means : (n_b,) float, <s_v>
-    """
-
-    directions: FloatArray
-    means: FloatArray
-
-    def solve(self, rhs: FloatArray) -> FloatArray:
-        """Return (J M^-1 J^T)^-1 rhs, for rhs (n_b,) or (n_b, m).
-
-        Raises LinAlgError if the matrix is singular: an edge has no length, or all edges
-        lie along one line.
-        """
-        columns = np.array(rhs.T, dtype=np.float64, order="C", ndmin=2)
-        for column in columns:
-            if not solve_lengths(self.directions, self.means, column):
-                raise LinAlgError("an edge of the loop has no length, or the loop no width")
-        solution: FloatArray = columns.T.reshape(rhs.shape)
-        return solution
-
-
-def length_metric(loop: Loop, x_loop: FloatArray) -> LengthMetric:
-    """Return J M^-1 J^T at a loop (n_b, d), d = 2 or 3."""
-    directions = loop.chords(x_loop) / loop.rest_lengths[:, None]
-    return LengthMetric(directions, loop.mean_lengths)
-
-
 def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
     """Return the nearest loop (n_b, d) that keeps its lengths, to rounding; None if lost.
 
@@ -79,7 +43,7 @@ def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
     that one's length would throw a short one about: loops of very uneven edges keep each
     edge's direction instead, as well as they can and still close.
     """
-    if loop.rest_lengths.max() > _UNEVEN * loop.rest_lengths.min():
+    if is_uneven(loop):
         return _turn_edges(loop, x_loop)
     mass = loop.mean_lengths[:, None]
     # What rounding of the positions leaves of a short edge's length.
@@ -101,6 +65,11 @@ def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
             return None
         x = x - loop.tension_force(x, pull) / mass
     return x if error < small else None
+
+
+def is_uneven(loop: Loop) -> bool:
+    """Return whether some edges are so much longer than others that rounding tells."""
+    return bool(loop.rest_lengths.max() > _UNEVEN * loop.rest_lengths.min())
 
 
 def _turn_edges(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
@@ -186,6 +155,17 @@ class Lengths:
         """Return the nearest loop that keeps its lengths."""
         return project_lengths(self.loop, x)
 
+    def turns(self, x: FloatArray) -> EdgeTurns | None:
+        """Return the turns of the edges; None of very uneven ones.
+
+        A Gram matrix loses the turns of short edges among those of long ones.
+        """
+        return None if is_uneven(self.loop) else edge_turns(self.loop, x)
+
+    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+        """Return tensions / s (n,)."""
+        return tensions / self.loop.rest_lengths
+
 
 class Unconstrained:
     """No equation at all: the loop's length is free."""
@@ -205,3 +185,10 @@ class Unconstrained:
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return the loop itself."""
         return x
+
+    def turns(self, x: FloatArray) -> None:
+        """Return None: edges are not kept by turning."""
+
+    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+        """Return no stiffness."""
+        return np.zeros(0)

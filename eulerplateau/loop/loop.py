@@ -29,7 +29,16 @@ class Loop:
     def bending_matrix(self) -> FloatArray:
         """B (n_b, n_b) with sum_v <s_v> kappa_v^2 = tr(x^T B x) (alpha = 1)."""
         unit = np.eye(len(self.rest_lengths))
-        tangent = (np.roll(unit, -1, axis=0) - unit) / self.rest_lengths[:, None]
+        return self._bending_by(np.roll(unit, -1, axis=0) - unit)
+
+    @cached_property
+    def edge_bending_matrix(self) -> FloatArray:
+        """K (n_b, n_b) with sum_v <s_v> kappa_v^2 = tr(e^T K e), by the edges e_v."""
+        return self._bending_by(np.eye(len(self.rest_lengths)))
+
+    def _bending_by(self, edges: FloatArray) -> FloatArray:
+        """Return the bending energy's matrix by unknowns, columns (n_b, n) of the edges."""
+        tangent = edges / self.rest_lengths[:, None]
         turn = tangent - np.roll(tangent, 1, axis=0)
         stiffness: FloatArray = turn.T @ (turn / self.mean_lengths[:, None])
         return stiffness

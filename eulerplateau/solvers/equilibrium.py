@@ -66,7 +66,7 @@ class Stability:
     eigenvalues : (m,) float, ascending, in units alpha / L^4 for the norm integral |p|^2 ds
         All of them, or of a large loop the lowest: every one that is not stable is there.
     error_bound : float
-        What rounding can have moved each eigenvalue by.
+        What rounding can have moved an eigenvalue by that is small among them.
     """
 
     eigenvalues: FloatArray

@@ -74,8 +74,7 @@ class DenseModels:
 
     def modes(self, model: TangentModel, count: int) -> FloatArray:
         """Return the softest modes (d n, count)."""
-        modes: FloatArray = model.basis @ model.eigen[1][:, :count]
-        return modes
+        return model.modes(model.eigen[1][:, :count])
 
     def settle(
         self,

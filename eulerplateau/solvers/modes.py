@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.film import Film, QuadraticFilm
+from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.solvers.equilibrium import Equilibrium
-from eulerplateau.solvers.newton import models_for
+from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.problem import Problem
 
 
@@ -18,7 +20,7 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     """
     film = problem.film.of_loop(found.shape)
     energy = film.energy(problem.loop, found.load)
-    models = models_for(problem.film, problem.loop, energy)
+    models = _models_for(problem.film, problem.loop, energy)
     x_loop = film.project(found.shape.x_loop)
     model = models.at(x_loop)
     modes = {}
@@ -27,3 +29,14 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
         largest = float(np.linalg.norm(moved, axis=1).max())
         modes[f"mode_{number}"] = moved / largest
     return modes
+
+
+def _models_for(film: Film, loop: Loop, energy: LoopEnergy) -> Models:
+    """Return how the second variation of a film's energy is looked at."""
+    match film:
+        case QuadraticFilm():
+            from eulerplateau.solvers.quadratic_models import quadratic_models
+
+            return quadratic_models(loop, energy)
+        case _:
+            return DenseModels(energy)

@@ -19,11 +19,9 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import AreaFilm, Film, PlaneFilm, QuadraticFilm
-from eulerplateau.loop import Loop, LoopEnergy
+from eulerplateau.film import AreaFilm, Film, PlaneFilm
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
-from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.problem import Problem
 
 
@@ -76,14 +74,3 @@ def _search_for(film: Film) -> Search:
         case _:
             from eulerplateau.solvers.quadratic import search
     return search
-
-
-def models_for(film: Film, loop: Loop, energy: LoopEnergy) -> Models:
-    """Return how the second variation of a film's energy is looked at."""
-    match film:
-        case QuadraticFilm():
-            from eulerplateau.solvers.quadratic_models import quadratic_models
-
-            return quadratic_models(loop, energy)
-        case _:
-            return DenseModels(energy)

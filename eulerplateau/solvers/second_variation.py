@@ -20,6 +20,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability
+from eulerplateau.solvers.tangent_coordinates import Columns, Coordinates, turned
 
 
 @dataclass(frozen=True)
@@ -32,33 +33,26 @@ class TangentModel:
     Attributes
     ----------
     x : (n, d) float
+    weights : (n,) float, the length that belongs to each vertex
     tensions : float, one for each equation of the constraint
         Least-squares multipliers lambda.
     residual : float
         |g + J^T lambda|_inf over the largest of the forces that g is the sum of.
     rounding : float
         The residual that rounding alone can leave.
-    basis : (d n, m) float
-        Orthonormal columns in the coordinates sqrt(<s>) x: J p = 0, no free motion.
+    coordinates : orthonormal ones of the displacements p with J p = 0, no free motion
     gradient : (m,) float
     hessian : (m, m) float
-    scale : (d n,) float, sqrt(<s>)
     """
 
     x: FloatArray
+    weights: FloatArray
     tensions: FloatArray
     residual: float
     rounding: float
-    basis: FloatArray
+    coordinates: Coordinates
     gradient: FloatArray
     hessian: FloatArray
-    scale: FloatArray
-
-    @property
-    def weights(self) -> FloatArray:
-        """The length (n,) that belongs to each vertex."""
-        weights: FloatArray = self.scale[:: self.x.shape[1]] ** 2
-        return weights
 
     @cached_property
     def eigen(self) -> tuple[FloatArray, FloatArray]:
@@ -71,45 +65,87 @@ class TangentModel:
         """Eigenvalues of the Hessian, ascending; a third of the work of `eigen`."""
         return np.linalg.eigvalsh(self.hessian).astype(np.float64, copy=False)
 
+    @cached_property
+    def basis(self) -> FloatArray:
+        """The coordinates' orthonormal columns (d n, m), as `modes` are."""
+        return self.modes(np.eye(len(self.gradient)))
+
+    @property
+    def scale(self) -> FloatArray:
+        """The factor sqrt(<s>) (d n,) of each of the coordinates sqrt(<s>) x."""
+        return np.repeat(np.sqrt(self.weights), self.x.shape[1])
+
     def displacement(self, coefficients: FloatArray) -> FloatArray:
-        """Return the loop displacement (n_b, 3) of tangent coefficients."""
-        step: FloatArray = (self.basis @ coefficients / self.scale).reshape(self.x.shape)
-        return step
+        """Return the loop displacement (n, d) of tangent coefficients (m,)."""
+        moved = self.coordinates.displacement(coefficients[:, None])
+        return moved.reshape(self.x.shape)
+
+    def slope(self, force: FloatArray) -> FloatArray:
+        """Return what a force (n, d) is by the coefficients (m,)."""
+        return self.coordinates.slope(force.reshape(-1, 1))[:, 0]
+
+    def coefficients(self, displacement: FloatArray) -> FloatArray:
+        """Return the coefficients (m,) of the part of a displacement (n, d) they span."""
+        return self.slope(self.weights[:, None] * displacement)
+
+    def modes(self, coefficients: FloatArray) -> FloatArray:
+        """Return modes (d n, k) of coefficients (m, k), in the coordinates sqrt(<s>) x."""
+        moved = self.coordinates.displacement(coefficients)
+        return self.scale[:, None] * moved
 
 
 def tangent_model(energy: LoopEnergy, x: FloatArray) -> TangentModel:
     """Build the model at loop positions x (n, d) that keep the energy's constraint."""
-    n, d = x.shape
-    scale = np.repeat(np.sqrt(energy.weights), d)
     forces = energy.forces(x)
-    weighted = sum(forces[1:], start=forces[0]).ravel() / scale
-    rows = energy.constraint.jacobian(x)
+    total = sum(forces[1:], start=forces[0])
+    coordinates, tensions, unbalanced = _tangent_space(energy, x, total)
+    forces.append(energy.constraint.force(x, tensions))
+    largest = max(float(np.abs(force).max()) for force in forces)
+    return TangentModel(
+        x=x,
+        weights=energy.weights,
+        tensions=tensions,
+        residual=float(np.abs(unbalanced).max()) / largest,
+        rounding=energy.rounding * float(np.abs(x).max()) / largest,
+        coordinates=coordinates,
+        gradient=coordinates.slope(unbalanced.reshape(-1, 1))[:, 0],
+        hessian=coordinates.hessian(energy, x, tensions),
+    )
+
+
+def _tangent_space(
+    energy: LoopEnergy, x: FloatArray, force: FloatArray
+) -> tuple[Coordinates, FloatArray, FloatArray]:
+    """Return coordinates, tensions, and what of a force (n, d) neither they balance.
+
+    Nor along motions that are free: what a mesh leaves of a soap film's force there is a
+    discretisation error.
+    """
     free = energy.free_motions(x)
+    turns = energy.constraint.turns(x)
+    if turns is None:
+        return _by_columns(energy, x, force, free)
+    tensions = turns.metric.balance(force)
+    unbalanced = (force + energy.constraint.force(x, tensions)).reshape(-1, 1)
+    root = np.repeat(np.sqrt(energy.weights), x.shape[1])[:, None]
+    motions = np.linalg.qr(free * root)[0] * root
+    unbalanced -= motions @ (motions.T @ (unbalanced / root**2))
+    return turned(turns, free), tensions, unbalanced.reshape(x.shape)
+
+
+def _by_columns(
+    energy: LoopEnergy, x: FloatArray, force: FloatArray, free: FloatArray
+) -> tuple[Coordinates, FloatArray, FloatArray]:
+    scale = np.repeat(np.sqrt(energy.weights), x.shape[1])
+    weighted = force.ravel() / scale
+    rows = energy.constraint.jacobian(x)
     m = len(rows)
     normals = np.hstack([(rows / scale).T, free * scale[:, None]])
     q, r = np.linalg.qr(normals, mode="complete")
     tensions = -np.linalg.solve(r[:m, :m], q[:, :m].T @ weighted)
-    forces.append((rows.T @ tensions).reshape(n, d))
-    largest = max(float(np.abs(force).max()) for force in forces)
-    # Not gradient + tension: along motions that cost a soap film nothing its mesh leaves a
-    # discretisation error.
     basis = q[:, m + free.shape[1] :]
     unbalanced = basis @ (basis.T @ weighted) * scale
-    hessian = energy.lagrangian_hessian(x, tensions)
-    # One matrix for all coordinates, or one for the displacements of all of them.
-    root = scale[:: d * n // len(hessian)]
-    scaled = hessian / (root * root[:, None])
-    projected = basis.T @ (scaled @ basis.reshape(len(scaled), -1)).reshape(d * n, -1)
-    return TangentModel(
-        x=x,
-        tensions=tensions,
-        residual=float(np.abs(unbalanced).max()) / largest,
-        rounding=energy.rounding * float(np.abs(x).max()) / largest,
-        basis=basis,
-        gradient=basis.T @ weighted,
-        hessian=0.5 * (projected + projected.T),
-        scale=scale,
-    )
+    return Columns(basis, scale), tensions, unbalanced.reshape(x.shape)
 
 
 def stability(model: TangentModel) -> Stability:

@@ -116,17 +116,18 @@ class ShiftedInverse:
     ----------
     n_below : int
         How many eigenvalues on the tangent space are below -tau.
+    space : the tangent space
     """
 
     n_below: int
-    _space: TangentSpace
+    space: TangentSpace
     _inverse: FloatArray
     _complement: FloatArray
     _pivots: IntArray
 
     def solve(self, fields: FloatArray) -> FloatArray:
         """Return (C + tau)^-1 fields (n_b, 3, m), tangent fields."""
-        space, n, m = self._space, len(fields), fields.shape[2]
+        space, n, m = self.space, len(fields), fields.shape[2]
         free = self._apply(fields)
         affine = np.tensordot(space.affine, free, (0, 0)).reshape(-1, m)
         gap = np.concatenate([-space.stretch(free), affine])

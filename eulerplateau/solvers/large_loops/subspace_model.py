@@ -21,6 +21,7 @@ from eulerplateau.solvers.large_loops.shifted_inverse import (
     tangent_space,
 )
 from eulerplateau.solvers.second_variation import TangentModel
+from eulerplateau.solvers.tangent_coordinates import Columns
 
 # Shift where nothing is unstable: well below the lowest bending modes, 2 (2 pi n)^4.
 _SHIFT = 30.0
@@ -63,13 +64,13 @@ def subspace_model(
     basis = _krylov(inverse, start, _DEPTH, slope)
     return TangentModel(
         x=x,
+        weights=energy.weights,
         tensions=tensions,
         residual=float(np.abs(imbalance).max()) / forces,
         rounding=0.25 * energy.rounding * float(np.abs(x).max()) / forces,
-        basis=basis,
+        coordinates=Columns(basis, np.repeat(space.root, 3)),
         gradient=basis.T @ slope.ravel(),
         hessian=_on_basis(operator, basis),
-        scale=np.repeat(space.root, 3),
     )
 
 
@@ -90,7 +91,7 @@ def lowest_modes(
     if doubtful:
         inverse = _inverse(space, operator, float(model.eigen[0][0]), 0)
     wanted = min(doubtful + 1, 2 * len(model.x) - 6)
-    modes = model.basis @ model.eigen[1][:, : wanted + 2]
+    modes = model.modes(model.eigen[1][:, : wanted + 2])
     values = np.full(wanted, np.inf)
     for _ in range(_ROUNDS):
         known = modes.reshape(len(model.x), 3, -1)
@@ -151,16 +152,16 @@ def _krylov(
     """
     basis = np.empty((3 * len(start), 0))
     if first is not None:
-        basis = _with(basis, first)
+        basis = _with(inverse.space, basis, first)
     block = start
     for _ in range(depth):
         known = basis.shape[1]
-        basis = _with(basis, inverse.solve(block))
+        basis = _with(inverse.space, basis, inverse.solve(block))
         block = basis[:, known:].reshape(*start.shape[:2], -1)
     return basis
 
 
-def _with(basis: FloatArray, fields: FloatArray) -> FloatArray:
+def _with(space: TangentSpace, basis: FloatArray, fields: FloatArray) -> FloatArray:
     """Return the orthonormal columns (3 n_b, m) with what `fields` (n_b, 3, k) add."""
     columns = fields.reshape(len(basis), -1)
     size = np.linalg.norm(columns, axis=0)
@@ -170,5 +171,6 @@ def _with(basis: FloatArray, fields: FloatArray) -> FloatArray:
     columns, r = np.linalg.qr(columns)
     columns = columns[:, np.abs(np.diag(r)) > _DEPENDENT]
     # Once more: what little was left of a column may have lost its direction.
+    columns = space.project(columns.reshape(*fields.shape[:2], -1)).reshape(len(basis), -1)
     columns = columns - basis @ (basis.T @ columns)
     return np.hstack([basis, columns / np.linalg.norm(columns, axis=0)])

@@ -13,6 +13,7 @@ from functools import partial
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film.folds import is_folded, laid_anew
 from eulerplateau.film.free_moves import FreeInterior
 from eulerplateau.film.harmonic import balance, follower
 from eulerplateau.film.interior import FreeFilm, HeightsFilm, LocalFilm
@@ -84,8 +85,10 @@ class AreaFilm:
         return balance(self.tiling(shape.triangles), shape.x)
 
     def prepared(self, shape: Shape) -> Shape:
-        """Return the shape brought near to rest, thin triangles replaced."""
+        """Return the shape brought near to rest, folds and thin triangles replaced."""
         tiling, x = self.tiling(shape.triangles), shape.x
+        if is_folded(tiling, x):
+            tiling, x = laid_anew(tiling, x)
         if tiling.sides(x).smallest_angle < LIMITS.thin:
             tiling, x = mend_triangles(tiling, x)
         return self._near(tiling, x).reference
@@ -114,6 +117,10 @@ class AreaFilm:
     def pinched(self, shape: Shape, loop: Loop) -> bool:
         """Return whether strands of the loop meet: no film spans what is between them."""
         return loop.strands_meet(shape.x_loop)
+
+    def folded(self, shape: Shape) -> bool:
+        """Return whether triangles lie on each other, and count what they do not span."""
+        return is_folded(self.tiling(shape.triangles), shape.x)
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,10 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.flip_kernels import flip_to_delaunay
 from eulerplateau.film.tiling import Tiling
-from eulerplateau.mesh import neighbours
 
 
 def delaunay_flips(tiling: Tiling, x: FloatArray) -> Tiling:
     """Return the film with Delaunay's triangles on the vertices x (n_v, 3)."""
     triangles = tiling.triangles.copy()
-    flips = flip_to_delaunay(np.ascontiguousarray(x), triangles, neighbours(triangles))
+    flips = flip_to_delaunay(np.ascontiguousarray(x), triangles, tiling.neighbours.copy())
     return tiling.with_triangles(triangles) if flips else tiling

@@ -13,6 +13,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
 from eulerplateau.film.area import AreaFilm
+from eulerplateau.film.folds import is_folded, laid_anew
 from eulerplateau.film.harmonic import follower
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.plane_mesh import carry_in_plane
@@ -63,10 +64,13 @@ class PlaneFilm:
         return self.energy_gradient(shape, 1.0)[1]
 
     def prepared(self, shape: Shape) -> Shape:
-        """Return the shape laid flat, and turned over if its loop runs clockwise."""
+        """Return the shape laid flat without folds, turned over if it runs clockwise."""
         flat = self.flattened(shape.x)
         if polygon_area(shape.x_loop @ self.axes.T) < 0:
             flat -= 2 * np.outer(shape.x @ self.axes[1], self.axes[1])
+        tiling = self.soap.tiling(shape.triangles)
+        if is_folded(tiling, flat):
+            return self.soap.on(*laid_anew(tiling, flat))
         return shape.moved(flat)
 
     def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
@@ -88,6 +92,10 @@ class PlaneFilm:
         """
         inside_out = self.energy_gradient(shape, 1.0)[0] < 0
         return inside_out or loop.strands_meet(shape.x_loop)
+
+    def folded(self, shape: Shape) -> bool:
+        """Return whether the mesh shows another area than its polygon has."""
+        return self.soap.folded(shape)
 
 
 @dataclass(frozen=True)

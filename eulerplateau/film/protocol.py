@@ -54,6 +54,9 @@ class Film(Protocol):
     def pinched(self, shape: Shape, loop: Loop) -> bool:
         """Return whether the film has run out of width: strands of its loop meet."""
 
+    def folded(self, shape: Shape) -> bool:
+        """Return whether triangles lie on each other, and count what they do not span."""
+
 
 class FilmOfLoop(Protocol):
     """A film with its inside eliminated: a function of its loop, good near one shape.

@@ -95,6 +95,10 @@ class QuadraticFilm:
         """Return False: springs may cross each other."""
         return False
 
+    def folded(self, shape: Shape) -> bool:
+        """Return False: what weights at rest span is known whatever triangles do."""
+        return False
+
 
 @dataclass(frozen=True)
 class QuadraticOfLoop:

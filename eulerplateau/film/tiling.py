@@ -22,7 +22,7 @@ from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.film import area_kernels
 from eulerplateau.film.dissection import LARGEST, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
-from eulerplateau.mesh import smallest_angle, unit
+from eulerplateau.mesh import neighbours, smallest_angle, unit
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,11 @@ class Tiling:
 
     def cotangent_laplacian(self, sides: TriangleGeometry) -> csc_array:
         """Return L (n_v, n_v) with area gradient = L x; the film at rest is L x = 0."""
-        return self._scalar.fill(sides.cotangent)
+        return self.filled(sides.cotangent)
+
+    def filled(self, blocks: FloatArray) -> csc_array:
+        """Return the matrix (n_v, n_v) that couples corners by blocks (n_t, 3, 3)."""
+        return self._scalar.fill(blocks)
 
     def normal_hessian(self, sides: TriangleGeometry, directions: FloatArray) -> csc_array:
         """Return the Hessian (n_v, n_v) for displacements along `directions` (n_v, 3)."""
@@ -177,6 +181,11 @@ class Tiling:
     def pairs(self) -> tuple[IntArray, IntArray]:
         """The vertices of every entry (m,) of a matrix (n_v, n_v): its row, its column."""
         return self._scalar.indices, self._scalar.columns
+
+    @cached_property
+    def neighbours(self) -> IntArray:
+        """The triangle (n_t, 3) beyond the side opposite each corner, -1 at the loop."""
+        return neighbours(self.triangles)
 
     @cached_property
     def pieces(self) -> list[IntArray]:

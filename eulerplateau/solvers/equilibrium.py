@@ -35,6 +35,7 @@ class Status(Enum):
     NOT_FINITE = "not_finite"
     UNRESOLVED = "unresolved"
     PINCHED = "pinched"
+    FOLDED = "folded"
     TOUCHING = "touching"
     COLLAPSED = "collapsed"
 
@@ -51,6 +52,7 @@ _ADVICE = {
     Status.SADDLE: "lower states lie close by: the load is at a transition; step past it",
     Status.NOT_FINITE: "the start is not finite, or the energy overflowed: a smaller load",
     Status.PINCHED: "two strands of the loop meet: no film spans what is between them",
+    Status.FOLDED: "triangles lie on each other: a mesh without folds, or a coarser one",
     Status.TOUCHING: "the edge meets itself: a smaller load, or softer adhesions",
     Status.COLLAPSED: "two adhesions have met: leave one out, or make them stiffer",
     Status.UNRESOLVED: "the loop turns by over 30 degrees at a vertex: use a finer mesh",

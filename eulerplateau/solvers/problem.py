@@ -190,7 +190,8 @@ class Problem:
     def classified(self, found: Equilibrium) -> Equilibrium:
         """Return `found`; UNRESOLVED if it converged to a loop that its mesh cannot carry.
 
-        And PINCHED if a soap film has run out of width: between strands that meet no disk
+        FOLDED if triangles of a soap film lie on each other, whose area is not spanned. And
+        PINCHED if a soap film has run out of width: between strands that meet no disk
         is left to span, and what a solver makes of the mesh there means nothing. Every
         solution passes here before anybody sees it, whatever method found it.
         """
@@ -200,5 +201,8 @@ class Problem:
         if not found.converged:
             return found
         turning = largest_turning(found.shape.x_loop)
-        resolved = turning <= RESOLVED_TURNING
-        return found if resolved else replace(found, status=Status.UNRESOLVED)
+        if turning > RESOLVED_TURNING:
+            return replace(found, status=Status.UNRESOLVED)
+        if self.film.folded(found.shape):
+            return replace(found, status=Status.FOLDED)
+        return found

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import Loop, close_with_lengths
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent
 from eulerplateau.solvers.equilibrium import RESIDUAL_TOLERANCE, Equilibrium, Status
-from eulerplateau.solvers.large_loops.coarse_start import coarsen
+from eulerplateau.solvers.large_loops.coarse_start import coarsen, is_rough
 from eulerplateau.solvers.models import Models
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
@@ -57,18 +55,14 @@ def _start(
     given = close_with_lengths(loop, x)
     if len(x) <= DENSE_LOOP:
         return given
-    energy = models.energy
-    coarse = coarsen(loop, energy, DENSE_LOOP)
-    nowhere = np.zeros_like(x)
-    shape = close_with_lengths(coarse.loop, coarse.restrict(x))
+    coarse = coarsen(loop, DENSE_LOOP)
+    shape = coarse.start(x)
     if shape is None:
         return given
-    smooth = close_with_lengths(loop, coarse.prolong(shape))
-    if given is not None and (
-        smooth is None or energy.change(nowhere, given) < 2 * energy.change(nowhere, smooth)
-    ):
+    smooth = coarse.smooth(shape)
+    if given is not None and (smooth is None or not is_rough(models.energy, given, smooth)):
         return given
-    descent = Descent(quadratic_models(coarse.loop, coarse.energy), max_iterations)
-    minimum = descent.run(shape)[0].model.x
-    smooth = close_with_lengths(loop, coarse.prolong(minimum))
+    energy = coarse.energy(models.energy)
+    descent = Descent(quadratic_models(coarse.loop, energy), max_iterations)
+    smooth = coarse.smooth(descent.run(shape)[0].model.x)
     return given if smooth is None else smooth

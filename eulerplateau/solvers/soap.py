@@ -10,14 +10,15 @@ from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
-from eulerplateau.film import make_film
+from eulerplateau.film import FilmOfLoop, make_film
 from eulerplateau.loop import close_with_lengths
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
+from eulerplateau.solvers.large_loops.coarse_start import smoothed
 from eulerplateau.solvers.models import DenseModels
 from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.quadratic_models import quadratic_models
+from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
 
 # A soap film is sought near the last shape at most so many times in one solve.
 _SHAPES = 60
@@ -35,35 +36,42 @@ def search(
 
     Tensions are of no use: they follow from the loop.
     """
-    x_loop = close_with_lengths(problem.loop, start.x_loop)
+    large = len(start.loop) > DENSE_LOOP
+    smooth = smoothed(problem.loop, start.x_loop, DENSE_LOOP) if large else None
+    x_loop = close_with_lengths(problem.loop, start.x_loop) if smooth is None else smooth
     if x_loop is None:
         return None
+    if smooth is not None or problem.film.folded(start):
+        start = _spanned(problem, x_loop) or start
     # Blocks of a hundred rows: two threads would mostly wait for each other.
     with threadpool_limits(1, user_api="blas"):
         found = _near(problem, start, x_loop, load, max_iterations, observe)
         if found is not None:
             return found
-        smooth = _unfolded(problem, x_loop, load, max_iterations)
-        if smooth is None:
+        tied = _tied(problem)
+        if tied is None:
             return None
-        return _near(problem, smooth, smooth.x_loop, load, max_iterations, observe)
+        models = quadratic_models(problem.loop, tied.energy(problem.loop, load))
+        state, _ = Descent(models, max_iterations).run(x_loop)
+        shape = tied.shape(state.model.x)
+        return _near(problem, shape, shape.x_loop, load, max_iterations, observe)
 
 
-def _unfolded(
-    problem: Problem, x_loop: FloatArray, load: float, max_iterations: int
-) -> Shape | None:
-    """Return the shape of least Dirichlet energy that a crumpled loop leads to.
+def _tied(problem: Problem) -> FilmOfLoop | None:
+    """Return the film of least Dirichlet energy, tied to the mesh as it was given.
 
-    That film, tied to the mesh as it was given, can be spanned across any loop.
+    It can be spanned across any loop, however crumpled.
     """
-    loop, rest = problem.loop, problem.disk.shape
     try:
-        film = make_film(problem.disk, "dirichlet").of_loop(rest)
+        return make_film(problem.disk, "dirichlet").of_loop(problem.disk.shape)
     except (MeshError, LinAlgError):
         return None
-    models = quadratic_models(loop, film.energy(loop, load))
-    state, _ = Descent(models, max_iterations).run(x_loop)
-    return film.shape(state.model.x)
+
+
+def _spanned(problem: Problem, x_loop: FloatArray) -> Shape | None:
+    """Return a smooth film across a loop (n_b, 3), whatever its start was."""
+    tied = _tied(problem)
+    return None if tied is None else tied.shape(x_loop)
 
 
 def _near(

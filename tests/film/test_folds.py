@@ -28,9 +28,7 @@ def twins(rings: int, aspect: float, seed: int) -> tuple[Disk, Disk]:
 def test_folded_mesh_gives_the_film_of_its_sound_twin(
     rings: int, aspect: float, load: float
 ) -> None:
-    sound, folded = (
-        solve(Problem(mesh, "area"), load) for mesh in twins(rings, aspect, 0)
-    )
+    sound, folded = (solve(Problem(mesh, "area"), load) for mesh in twins(rings, aspect, 0))
     assert sound.converged
     assert folded.converged
     # Flat films have no discretisation error, whatever their triangles.

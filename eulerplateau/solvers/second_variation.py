@@ -12,13 +12,15 @@ unit is alpha / L^4, i.e. 1 for L = alpha = 1.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import LoopEnergy
+from eulerplateau.loop import EdgeTurns, LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.tangent_coordinates import Columns, Coordinates, turned
 
@@ -123,8 +125,20 @@ def _tangent_space(
     """
     free = energy.free_motions(x)
     turns = energy.constraint.turns(x)
-    if turns is None:
-        return _by_columns(energy, x, force, free)
+    if turns is not None:
+        # On a loop that has fallen onto a line turns hang together, and a QR is surer.
+        with suppress(LinAlgError):
+            return _by_turns(energy, x, force, free, turns)
+    return _by_columns(energy, x, force, free)
+
+
+def _by_turns(
+    energy: LoopEnergy,
+    x: FloatArray,
+    force: FloatArray,
+    free: FloatArray,
+    turns: EdgeTurns,
+) -> tuple[Coordinates, FloatArray, FloatArray]:
     tensions = turns.metric.balance(force)
     unbalanced = (force + energy.constraint.force(x, tensions)).reshape(-1, 1)
     root = np.repeat(np.sqrt(energy.weights), x.shape[1])[:, None]

@@ -22,6 +22,8 @@ from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
 
 # A soap film is sought near the last shape at most so many times in one solve.
 _SHAPES = 60
+# A rough start of a large loop is smoothed to what a loop of so many vertices can show.
+_SMOOTH = DENSE_LOOP // 2
 
 
 def search(
@@ -37,7 +39,7 @@ def search(
     Tensions are of no use: they follow from the loop.
     """
     large = len(start.loop) > DENSE_LOOP
-    smooth = smoothed(problem.loop, start.x_loop, DENSE_LOOP) if large else None
+    smooth = smoothed(problem.loop, start.x_loop, _SMOOTH) if large else None
     x_loop = close_with_lengths(problem.loop, start.x_loop) if smooth is None else smooth
     if x_loop is None:
         return None

@@ -14,11 +14,14 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import cholesky, qr, solve_triangular
+from scipy.linalg import LinAlgError, cholesky, qr, solve_triangular
 from scipy.linalg.lapack import dsygst
 
 from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.loop import EdgeTurns, LoopEnergy
+
+# Least pivot of the Gram factor, of the largest: on an even loop it is about 1 / n.
+_DEPENDENT = 1e-7
 
 
 class Coordinates(Protocol):
@@ -166,12 +169,16 @@ class Turned:
 def turned(turns: EdgeTurns, free: FloatArray) -> Turned:
     """Return the coordinates orthogonal to free motions (d n, k) that keep all lengths.
 
-    Raises LinAlgError if the loop has no width.
+    Raises LinAlgError if the loop has hardly any width: then turns hang together.
     """
     weights = np.repeat(turns.weights, turns.across.shape[2])[:, None]
     gone = reflections(np.hstack([turns.closure(), turns.work(free * weights)]))
     norm = gone.rest_of_matrix(turns.mass())
-    return Turned(turns, gone, cholesky(norm.T, lower=True, check_finite=False))
+    root = cholesky(norm.T, lower=True, check_finite=False)
+    pivots = np.diag(root)
+    if len(root) and pivots.min() < _DEPENDENT * pivots.max():
+        raise LinAlgError("turns of the loop's edges hang together")
+    return Turned(turns, gone, root)
 
 
 @lru_cache(maxsize=4)

@@ -56,6 +56,27 @@ def test_same_film_is_reached_from_flat_rough_and_turned_starts(
         assert other.bending_energy == pytest.approx(found[0].bending_energy, rel=1e-5)
 
 
+def test_crumpled_fine_disk_becomes_the_regular_polygon_on_its_edges() -> None:
+    # Noise as large as the triangles, as the default start is on 40,000 vertices.
+    mesh = shapes.mesh_of(*shapes.disk_points(23))
+    found = solve(Problem(mesh, "area"), shapes.crumpled(mesh, 2e-3), 1000.0)
+    n = mesh.n_b
+    assert found.film_energy / 1000.0 == pytest.approx(
+        1 / (4 * n * np.tan(np.pi / n)), rel=1e-12
+    )
+
+
+@pytest.mark.slow
+def test_film_on_40000_vertices_comes_to_rest_from_the_default_start() -> None:
+    mesh = shapes.mesh_of(*shapes.disk_points(115))
+    found = solving.solve(Problem(mesh, "area"), 1000.0)
+    assert found.is_minimum
+    n = mesh.n_b
+    assert found.film_energy / 1000.0 == pytest.approx(
+        1 / (4 * n * np.tan(np.pi / n)), rel=1e-12
+    )
+
+
 @pytest.mark.parametrize("load", LOADS)
 def test_flat_film_is_the_one_that_is_kept_in_its_plane(mesh: Disk, load: float) -> None:
     space, plane = (

@@ -3,6 +3,7 @@ from .exploration import (
     DiagramPoint as DiagramPoint,
     Limits as Limits,
     explore_from as explore_from,
+    explore_on as explore_on,
 )
 from .family import Family as Family
 from .films import (
@@ -20,6 +21,7 @@ from .point import (
     first_point as first_point,
     point_near as point_near,
 )
+from .progress import Arrays as Arrays, progress_from as progress_from
 from .scaling import PowerLaw as PowerLaw, fit_power as fit_power
 from .special import (
     BIFURCATION as BIFURCATION,

@@ -12,7 +12,7 @@ and each point is corrected inside the hyperplane normal to the last direction (
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.point import (
@@ -29,6 +29,21 @@ _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
 _LEAST_LEAP = 1e-4  # arclength below which a leap is none, but a branch that turns
 
 
+@dataclass(frozen=True)
+class Place:
+    """How far a branch has been followed.
+
+    Attributes
+    ----------
+    step : float, arclength, of the next step if that can be corrected
+    left : int, points that may still follow
+    """
+
+    point: BranchPoint
+    step: float
+    left: int
+
+
 def follow(
     start: BranchPoint,
     control: StepControl,
@@ -40,22 +55,35 @@ def follow(
     Steps between points of which `leaps` is true are shortened. Ends early where no step,
     however short, can be corrected.
     """
-    point, step = start, control.first_step
-    low, high = control.window
-    for _ in range(control.max_points):
-        after = None
-        while after is None:
-            after = advance(point, step, control)
-            if after is None or (step > _LEAST_LEAP and leaps(point, after)):
-                after, step = None, 0.5 * step
-                if step < control.smallest_step:
-                    return
-        point = recentred(after, control)
-        yield point
-        if stop(point) or not low <= point.value <= high:
+    place: Place | None = Place(start, control.first_step, control.max_points)
+    while place is not None and (place := next_place(place, control, leaps)) is not None:
+        yield place.point
+        if stop(place.point) or outside(place.point, control):
             return
-        if after.corrections <= _EASY:
-            step = min(1.5 * step, control.largest_step)
+
+
+def outside(point: BranchPoint, control: StepControl) -> bool:
+    """Return whether a branch has left the window."""
+    low, high = control.window
+    return not low <= point.value <= high
+
+
+def next_place(
+    place: Place, control: StepControl, leaps: Callable[[BranchPoint, BranchPoint], bool]
+) -> Place | None:
+    """Return the next place on a branch; None if there is none, or there were enough."""
+    if place.left == 0:
+        return None
+    point, step, after = place.point, place.step, None
+    while after is None:
+        after = advance(point, step, control)
+        if after is None or (step > _LEAST_LEAP and leaps(point, after)):
+            after, step = None, 0.5 * step
+            if step < control.smallest_step:
+                return None
+    if after.corrections <= _EASY:
+        step = min(1.5 * step, control.largest_step)
+    return Place(recentred(after, control), step, place.left - 1)
 
 
 def advance(point: BranchPoint, step: float, control: StepControl) -> BranchPoint | None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import count
 
-from eulerplateau.branches.continuation import follow
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.continuation import Place, next_place, outside
 from eulerplateau.branches.point import BranchPoint, StepControl
+from eulerplateau.branches.progress import KeptPoint, Lead, Progress
 from eulerplateau.branches.special import SpecialPoint, branches_from, leaps, special_points
 from eulerplateau.branches.symmetry import loop_distance
 
@@ -44,6 +45,7 @@ class DiagramPoint:
     branch : int, counted from 0
     origin : int or None, the number of the special point the branch starts from
     number : int or None, of the special point; a known one keeps its number
+    then : what the exploration has come to with this point; None before a step's last one
     """
 
     branch: int
@@ -52,16 +54,7 @@ class DiagramPoint:
     special: SpecialPoint | None = None
     number: int | None = None
     known: bool = False
-
-
-@dataclass(order=True, frozen=True)
-class _Lead:
-    """A branch to follow: those from more stable points first, then as found."""
-
-    n_unstable: int
-    order: int
-    start: BranchPoint = field(compare=False)
-    origin: int | None = field(compare=False)
+    then: Progress | None = field(default=None, repr=False, compare=False)
 
 
 def explore_from(
@@ -71,59 +64,96 @@ def explore_from(
 
     That branch is followed the way `start` heads, or `both_ways`, one after the other.
     """
-    order = count()
-    leads = [_Lead(0, next(order), start, None)]
-    if both_ways:
-        back = replace(start, direction=start.direction.reversed())
-        leads.append(_Lead(0, next(order), back, None))
-    found: list[SpecialPoint] = []
-    for branch in count():
-        if not leads:
-            return
-        lead = heapq.heappop(leads)
-        for visited in _trace(lead, branch, control, limits, found):
-            yield visited
-            special = visited.special
-            if special is None or visited.known or len(found) > limits.special_points:
-                continue
-            for first in branches_from(special, control):
-                heapq.heappush(
-                    leads, _Lead(special.n_unstable, next(order), first, visited.number)
-                )
+    back = replace(start, direction=start.direction.reversed())
+    starts = [start, back] if both_ways else [start]
+    leads = [Lead(0, order, KeptPoint.of(at), None) for order, at in enumerate(starts)]
+    return explore_on(Progress(tuple(leads), order=len(leads)), control, limits)
 
 
-def _trace(
-    lead: _Lead,
-    branch: int,
-    control: StepControl,
-    limits: Limits,
-    found: list[SpecialPoint],
+def explore_on(
+    progress: Progress, control: StepControl, limits: Limits
 ) -> Iterator[DiagramPoint]:
-    """Yield one branch; special points not met before are added to `found`."""
-    yield DiagramPoint(branch, lead.origin, lead.start)
-    before = lead.start
-    leap = partial(leaps, control=control)
-    for after in follow(lead.start, control, limits.stop, leap):
-        for special in special_points(before, after, control):
-            number = _number(special, found)
-            known = number < len(found)
-            if not known:
-                found.append(special)
-            yield DiagramPoint(branch, lead.origin, special.point, special, number, known)
-            if special.arrived:
-                return
-        yield DiagramPoint(branch, lead.origin, after)
-        if after.stability.n_unstable > limits.unstable_modes:
-            return
-        # Where rounding hides an eigenvalue's sign, the next point decides.
-        if not after.stability.n_neutral or before.stability.n_neutral:
-            before = after
+    """Yield the points that follow what an exploration has come to."""
+    while progress.here is not None or progress.leads:
+        if progress.here is None:
+            progress = yield from _begun(progress, control)
+        else:
+            progress = yield from _stepped(progress, progress.here, control, limits)
 
 
-def _number(special: SpecialPoint, found: list[SpecialPoint]) -> int:
+def _begun(
+    progress: Progress, control: StepControl
+) -> Generator[DiagramPoint, None, Progress]:
+    """Yield the first point of the next branch; return the progress."""
+    leads = list(progress.leads)
+    lead = heapq.heappop(leads)
+    then = replace(
+        progress,
+        leads=tuple(leads),
+        origin=lead.origin,
+        here=lead.start,
+        before=lead.start,
+        step=control.first_step,
+        left=control.max_points,
+    )
+    yield DiagramPoint(progress.branch, lead.origin, lead.start.point, then=then)
+    return then
+
+
+def _stepped(
+    progress: Progress, here: KeptPoint, control: StepControl, limits: Limits
+) -> Generator[DiagramPoint, None, Progress]:
+    """Yield the special points up to the next point, and that; return the progress."""
+    point = before = here.again()
+    if progress.before is not None and progress.before is not here:
+        before = progress.before.again()
+    place = Place(point, progress.step, progress.left)
+    after = next_place(place, control, partial(leaps, control=control))
+    if after is None:
+        return progress.ended()
+    visited = partial(DiagramPoint, progress.branch, progress.origin)
+    for special in special_points(before, after.point, control):
+        number = _number(special, progress.met)
+        known = number < len(progress.met)
+        if not known:
+            progress = _with(special, progress, control, limits)
+        then = progress.ended() if special.arrived else None
+        yield visited(special.point, special, number, known, then)
+        if then is not None:
+            return then
+    then = replace(
+        progress, here=KeptPoint.of(after.point), step=after.step, left=after.left
+    )
+    stability = after.point.stability
+    # Where rounding hides an eigenvalue's sign, the next point decides.
+    if not stability.n_neutral or before.stability.n_neutral:
+        then = replace(then, before=then.here)
+    unstable = stability.n_unstable > limits.unstable_modes
+    if unstable or limits.stop(after.point) or outside(after.point, control):
+        then = then.ended()
+    yield visited(after.point, then=then)
+    return then
+
+
+def _with(
+    special: SpecialPoint, progress: Progress, control: StepControl, limits: Limits
+) -> Progress:
+    """Return the progress with a special point that is new, and the branches from it."""
+    number, leads = len(progress.met), list(progress.leads)
+    met = *progress.met, (special.point.x, special.point.value)
+    order = progress.order
+    if len(met) <= limits.special_points:
+        for first in branches_from(special, control):
+            lead = Lead(special.n_unstable, order, KeptPoint.of(first), number)
+            heapq.heappush(leads, lead)
+            order += 1
+    return replace(progress, met=met, leads=tuple(leads), order=order)
+
+
+def _number(special: SpecialPoint, met: Sequence[tuple[FloatArray, float]]) -> int:
     """Return the number of a special point, the next free one if it is new."""
-    for number, other in enumerate(found):
-        near = abs(special.point.value / other.point.value - 1) < _SAME_VALUE
-        if near and loop_distance(special.point.x, other.point.x) < _SAME_LOOP:
+    for number, (x, value) in enumerate(met):
+        near = abs(special.point.value / value - 1) < _SAME_VALUE
+        if near and loop_distance(special.point.x, x) < _SAME_LOOP:
             return number
-    return len(found)
+    return len(met)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy
@@ -27,3 +30,9 @@ class Family(Protocol):
 
     def released(self, x: FloatArray) -> Family:
         """Return the family whose film is free to move inside its surface, if it can be."""
+
+    def kept(self, x: FloatArray) -> Mapping[str, NDArray[Any]]:
+        """Return what makes it again, good near a loop x (n, d), to the bit."""
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> Family:
+        """Return the family that this was `kept` of, itself where it is no other."""

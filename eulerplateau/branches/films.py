@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import cast
+from typing import Any, cast
+
+from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
+from eulerplateau.branches.exploration import (
+    DiagramPoint,
+    Limits,
+    explore_from,
+    explore_on,
+)
 from eulerplateau.branches.point import (
     BranchPoint,
     StepControl,
     first_point,
     point_near,
 )
+from eulerplateau.branches.progress import Arrays, progress_from
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import LoopEnergy
@@ -51,6 +59,14 @@ class FilmFamily:
     def released(self, x: FloatArray) -> FilmFamily:
         """Return the film as a minimal surface, where it is curved."""
         return self._with(self.film.released(x))
+
+    def kept(self, x: FloatArray) -> Mapping[str, NDArray[Any]]:
+        """Return what makes the film again, good near a loop (n_b, 3)."""
+        return self.film.kept(x)
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> FilmFamily:
+        """Return the film that this was kept of."""
+        return self._with(self.film.restored(kept))
 
     def _with(self, film: FilmOfLoop) -> FilmFamily:
         return self if film is self.film else replace(self, film=film)
@@ -155,6 +171,7 @@ def explore(
     *,
     special_points: int = 8,
     unstable_modes: int = 3,
+    progress: Arrays | None = None,
 ) -> Iterator[FilmPoint]:
     """Yield the points of all branches of a film that hang together with a start.
 
@@ -170,6 +187,8 @@ def explore(
         New branches are followed from the first so many special points.
     unstable_modes : int
         A branch is left where it has more unstable modes than this.
+    progress : what `point.then.arrays()` was after a point of this very exploration
+        It goes on after that point, and asks for no start.
 
     Raises
     ------
@@ -180,14 +199,17 @@ def explore(
         raise SpecError("window", f"found ({low:g}, {high:g}); should be 0 < low < high")
     if problem.film.dimension != 3:
         raise SpecError("problem", "should not be kept in its plane: branches leave it")
+    control = StepControl(window=(low, high), unit=high)
+    limits = Limits(special_points, unstable_modes)
+    if progress is not None:
+        return _continued(problem, progress, control, limits)
     found = first_equilibrium(problem, low) if start is None else start
     if found.status not in _EQUILIBRIA:
         what = f"is no equilibrium ({found.status.value})"
         raise SpecError("start", f"{what}: {found.status.advice}")
     if not low <= found.load <= high:
         raise SpecError("start", f"has the load {found.load:g}, outside the window")
-    control = StepControl(window=(low, high), unit=high)
-    return _explored(problem, found, control, Limits(special_points, unstable_modes))
+    return _explored(problem, found, control, limits)
 
 
 def _explored(
@@ -197,6 +219,17 @@ def _explored(
         start = film_point(found, problem, control)
         inside = found.load > control.window[0]
         return explore_from(start, control, limits, both_ways=inside)
+
+    for visited in stepwise(explored):
+        yield FilmPoint(**vars(visited))
+
+
+def _continued(
+    problem: Problem, progress: Arrays, control: StepControl, limits: Limits
+) -> Iterator[FilmPoint]:
+    def explored() -> Iterator[DiagramPoint]:
+        family = FilmFamily(problem, problem.film.of_loop(problem.disk.shape))
+        return explore_on(progress_from(progress, family), control, limits)
 
     for visited in stepwise(explored):
         yield FilmPoint(**vars(visited))

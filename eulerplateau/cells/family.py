@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import cast
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import (
+    Arrays,
     BranchPoint,
     DiagramPoint,
     Limits,
     StepControl,
     explore_from,
+    explore_on,
     first_point,
     point_near,
+    progress_from,
 )
 from eulerplateau.cells.cell import Cell, shortest_edge
 from eulerplateau.cells.equilibrium import CellEquilibrium, measured, status_of
@@ -71,6 +77,15 @@ class CellFamily:
     def released(self, x: FloatArray) -> CellFamily:
         """Return the family itself: a film in the plane has nothing to release."""
         return self
+
+    def kept(self, x: FloatArray) -> Mapping[str, NDArray[Any]]:
+        """Return how long its shortest edge is."""
+        return {"edge": np.array(self.edge)}
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> CellFamily:
+        """Return the family with that edge."""
+        edge = float(kept["edge"])
+        return self if edge == self.edge else replace(self, edge=edge)
 
 
 @dataclass(frozen=True, repr=False)
@@ -134,6 +149,7 @@ def explore_cell(
     *,
     special_points: int = 8,
     unstable_modes: int = 3,
+    progress: Arrays | None = None,
 ) -> Iterator[CellPoint]:
     """Yield the points of all branches of a cell that hang together with a start.
 
@@ -151,6 +167,8 @@ def explore_cell(
         New branches are followed from the first so many special points.
     unstable_modes : int
         A branch is left where it has more unstable modes than this.
+    progress : what `point.then.arrays()` was after a point of this very exploration
+        It goes on after that point, and asks for no start.
 
     Raises
     ------
@@ -160,10 +178,6 @@ def explore_cell(
     low, high = (float(end) for end in window)
     if not 0 < low < high:
         raise SpecError("window", f"found ({low:g}, {high:g}); should be 0 < low < high")
-    found = solve_cell(cell, *family.pair(low)) if start is None else start
-    value = _value_of(found, family)
-    if not low <= value <= high:
-        raise SpecError("start", f"has {parameter} {value:g}, outside the window")
     control = StepControl(
         window=(low, high),
         unit=high,
@@ -171,6 +185,12 @@ def explore_cell(
         largest_step=_LARGEST_STEP,
     )
     limits = Limits(special_points, unstable_modes, lambda point: touches(point.x))
+    if progress is not None:
+        return _continued(progress, family, control, limits)
+    found = solve_cell(cell, *family.pair(low)) if start is None else start
+    value = _value_of(found, family)
+    if not low <= value <= high:
+        raise SpecError("start", f"has {parameter} {value:g}, outside the window")
     return _explored(family.near(found.x), found.x, value, control, limits)
 
 
@@ -185,12 +205,25 @@ def _explored(
     yield from up_to_contact(CellPoint(**vars(point)) for point in stepwise(explored))
 
 
-def up_to_contact(points: Iterable[CellPoint]) -> Iterator[CellPoint]:
+def _continued(
+    arrays: Arrays, family: CellFamily, control: StepControl, limits: Limits
+) -> Iterator[CellPoint]:
+    progress = progress_from(arrays, family)
+    points = stepwise(lambda: explore_on(progress, control, limits))
+    # Of the branch it was kept on points have been seen, or it would not have been kept.
+    seen = {progress.branch}
+    yield from up_to_contact((CellPoint(**vars(point)) for point in points), seen)
+
+
+def up_to_contact(
+    points: Iterable[CellPoint], before: Collection[int] = ()
+) -> Iterator[CellPoint]:
     """Yield the points of each branch up to the first that meets itself, included.
 
-    A special point located beyond that, or a branch that leaves one, is no cell's.
+    A special point located beyond that, or a branch that leaves one, is no cell's. Of the
+    branches `before` points have been seen already.
     """
-    seen: set[int] = set()
+    seen = set(before)
     ended: set[int] = set()
     for point in points:
         if touches(point.point.x):

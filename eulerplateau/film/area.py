@@ -7,12 +7,16 @@ function of its loop it is known near one shape at a time (interior.py).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film.condensation import Condensation
 from eulerplateau.film.folds import is_folded, laid_anew
 from eulerplateau.film.free_moves import FreeInterior
 from eulerplateau.film.harmonic import balance, follower
@@ -21,7 +25,7 @@ from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
 from eulerplateau.film.normal_moves import normal_heights
 from eulerplateau.film.repair import carry_along, mend_triangles
-from eulerplateau.film.tiling import LIMITS, Tiling
+from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
 from eulerplateau.mesh import Shape
 
@@ -185,6 +189,25 @@ class AreaOfLoop:
             return self
         return AreaOfLoop(self.film, local_film(*found, free=True))
 
+    def kept(self, x_loop: FloatArray) -> Mapping[str, NDArray[Any]]:
+        """Return where it was made, and the film on this loop: later ones begin there."""
+        found = self.local.relax(x_loop)
+        return {
+            "reference": self.local.x,
+            "triangles": self.local.tiling.triangles,
+            "free": np.array(self.local.is_free),
+            "x": found.x,
+            "u": found.u,
+        }
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> AreaOfLoop:
+        """Return the film near the shape it was kept of."""
+        tiling, x = self.film.tiling(kept["triangles"]), kept["reference"]
+        sides = tiling.sides(x)
+        local = _local(tiling, x, sides, follower(tiling, sides), bool(kept["free"]))
+        local.begin_at(kept["x"], kept["u"])
+        return AreaOfLoop(self.film, local)
+
 
 @dataclass(frozen=True)
 class Area(Term):
@@ -244,6 +267,16 @@ def local_film(tiling: Tiling, x: FloatArray, free: bool = False) -> LocalFilm:
         x, sides = after, tiling.sides(after)
     else:
         following = follower(tiling, sides)
+    return _local(tiling, x, sides, following, free)
+
+
+def _local(
+    tiling: Tiling,
+    x: FloatArray,
+    sides: TriangleGeometry,
+    following: Condensation,
+    free: bool,
+) -> LocalFilm:
     normals = tiling.vertex_normals(sides)[tiling.interior]
     if free:
         return FreeFilm(tiling, x, sides, normals, following, FreeInterior(tiling))

@@ -186,6 +186,12 @@ class LocalFilm(ABC):
         self._recent[:] = [found, *self._recent[:1]]
         return found
 
+    def begin_at(self, x: FloatArray, u: FloatArray) -> None:
+        """Forget the films asked for but one at rest, x (n_v, 3): the next begins there."""
+        sides = self.tiling.sides(x)
+        gradient = self.tiling.gradient(sides)
+        self._recent[:] = [FilmAtRest(self, x, u, sides, gradient)]
+
     def _at(self, base: FloatArray, u: FloatArray) -> FilmAtRest | None:
         """Return the film displaced by u from a mesh (n_v, 3); None if it folds over."""
         x = base.copy()

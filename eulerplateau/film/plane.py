@@ -5,10 +5,13 @@ Loops are polygons (n_b, 2) here. The mesh is carried along for what is measured
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
@@ -148,6 +151,16 @@ class PlaneOfLoop:
     def released(self, x_loop: FloatArray) -> PlaneOfLoop:
         """Return the same: in a plane vertices may lie anywhere."""
         return self
+
+    def kept(self, x_loop: FloatArray) -> Mapping[str, NDArray[Any]]:
+        """Return where its mesh is carried to on this polygon."""
+        shape = self.shape(x_loop)
+        return {"x": shape.x, "triangles": shape.triangles}
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> PlaneOfLoop:
+        """Return the film with its mesh where it was kept."""
+        shape = Shape(kept["x"], kept["triangles"], self.near.loop)
+        return PlaneOfLoop(self.film, shape)
 
 
 @dataclass(frozen=True)

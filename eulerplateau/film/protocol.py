@@ -5,7 +5,10 @@ The films do not import this file; they only do what it says.
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.load import Load
@@ -94,3 +97,9 @@ class FilmOfLoop(Protocol):
         A curved soap film becomes a discrete minimal surface; other films are returned as
         they are.
         """
+
+    def kept(self, x_loop: FloatArray) -> Mapping[str, NDArray[Any]]:
+        """Return what makes it again, as one that knows the film on this loop alone."""
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> FilmOfLoop:
+        """Return the one that this was `kept` of; the same from any of a film's."""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from eulerplateau.arrays import FloatArray, IntArray
@@ -142,6 +145,14 @@ class QuadraticOfLoop:
 
     def released(self, x_loop: FloatArray) -> QuadraticOfLoop:
         """Return the same: its vertices are where the weights have them."""
+        return self
+
+    def kept(self, x_loop: FloatArray) -> Mapping[str, NDArray[Any]]:
+        """Return nothing: it is the same everywhere."""
+        return {}
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> QuadraticOfLoop:
+        """Return the same."""
         return self
 
 

@@ -1,0 +1,80 @@
+"""From what is kept of an exploration it goes on as it would have, to the bit."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from eulerplateau.branches import Arrays, explore
+from eulerplateau.cells import Cell, explore_cell, regular_sites
+from eulerplateau.mesh import Shape, read_disk
+from eulerplateau.solvers import Problem
+from tests.helpers.shapes import disk_points, mesh_of
+
+ROOT = Path(__file__).parents[2]
+
+
+def from_file(arrays: Arrays) -> Arrays:
+    file = io.BytesIO()
+    np.savez(file, **arrays)
+    file.seek(0)
+    with np.load(file, allow_pickle=False) as stored:
+        return dict(stored)
+
+
+def told(point: Any) -> tuple[object, ...]:
+    """Return all that a row and its shape say of a point."""
+    found = point.equilibrium
+    x = found.shape.x if isinstance(getattr(found, "shape", None), Shape) else found.x
+    mode = None if point.special is None else point.special.mode.tobytes()
+    bits = x.tobytes(), found.stability.eigenvalues.tobytes(), mode
+    numbers = found.energy, found.residual, point.point.value, point.point.arclength
+    return point.branch, point.origin, point.number, point.known, *numbers, *bits
+
+
+def springs() -> Callable[..., Iterator[Any]]:
+    problem = Problem(read_disk(ROOT / "meshes" / "elongated.vtp"))
+    return partial(explore, problem, (640.0, 650.0), special_points=1)
+
+
+def soap() -> Callable[..., Iterator[Any]]:
+    points, triangles = disk_points(6)
+    problem = Problem(mesh_of(points * [1.3, 1.0], triangles), "area")
+    return partial(explore, problem, (1790.0, 1820.0), special_points=1)
+
+
+def cell() -> Callable[..., Iterator[Any]]:
+    made = Cell(regular_sites(3), 8)
+    return partial(explore_cell, made, "load", (50.0, 58.0), 100.0, special_points=1)
+
+
+@pytest.mark.parametrize(
+    "exploration",
+    [
+        pytest.param(springs, id="springs"),
+        pytest.param(soap, id="soap film"),
+        pytest.param(cell, id="cell"),
+    ],
+)
+def test_exploration_goes_on_as_if_it_had_not_stopped(
+    exploration: Callable[[], Callable[..., Iterator[Any]]],
+) -> None:
+    """From a step on a branch, and from the end of one with others still to be followed."""
+    whole, kept = [], []
+    for point in exploration()():
+        whole.append(told(point))
+        kept.append(None if point.then is None else from_file(point.then.arrays()))
+    assert {point[0] for point in whole} == {0, 1, 2}
+    ends = [k for k, (a, b) in enumerate(pairwise(whole)) if a[0] != b[0]]
+    for k in {len(whole) // 3, *ends[:1], len(whole) - 1}:
+        while kept[k] is None:
+            k += 1
+        rest = exploration()(progress=kept[k])
+        assert [told(point) for point in rest] == whole[k + 1 :]

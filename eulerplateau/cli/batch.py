@@ -50,9 +50,7 @@ def carried_out(
     return code
 
 
-def before(folder: Path, kept: int, finished: bool) -> None:
-    """Say what an earlier call has left in a folder, if it is to be kept."""
-    if finished:
-        click.echo(f"{folder}: finished before, {kept} rows: nothing is computed", err=True)
-    elif kept:
-        click.echo(f"{folder}: goes on after {kept} rows of an earlier call", err=True)
+def before(folder: Path, line: str) -> None:
+    """Say what is done with what an earlier call has left in a folder, if it has."""
+    if line:
+        click.echo(f"{folder}: {line}", err=True)

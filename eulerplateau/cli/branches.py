@@ -60,8 +60,7 @@ def branches(
         if draw_branches(folder):
             drawn.append("branches.png")
     if not quiet:
-        if result.finished:
-            before(folder, len(result.rows), finished=True)
+        before(folder, result.before)
         _report(result, drawn)
     if not result.unresolved:
         return 0

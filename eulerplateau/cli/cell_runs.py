@@ -183,7 +183,7 @@ def _report(result: CellRun, wanted: int, drawn: list[str], quiet: bool) -> int:
             err=True,
         )
     if not quiet:
-        before(result.folder, result.kept, result.finished)
+        before(result.folder, result.before)
         good = len(result.rows) - len(result.failures)
         click.echo(
             f"{result.folder}: {good} of {wanted} shapes converged in "

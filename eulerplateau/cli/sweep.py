@@ -125,7 +125,7 @@ def _report(result: RunResult, drawn: list[str], quiet: bool) -> None:
             err=True,
         )
     if not quiet:
-        before(result.folder, result.kept, result.finished)
+        before(result.folder, result.before)
         converged = len(result.rows) - len(result.failures)
         click.echo(
             f"{result.folder}: {converged} of {len(result.rows)} loads converged in "

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from eulerplateau.branches import SpecialPoint
-from eulerplateau.cells import ENDS, explore_cell, solve_cell, sweep_cell
+from eulerplateau.cells import ENDS, Cell, CellPoint, explore_cell, solve_cell, sweep_cell
 from eulerplateau.errors import ConflictError
-from eulerplateau.mesh import write_whole
 from eulerplateau.runs.cell_recording import describe, record_cell
 from eulerplateau.runs.cell_spec import CellRunSpec
 from eulerplateau.runs.cell_table import CellBranchRow, CellRow
 from eulerplateau.runs.continuing import look
-from eulerplateau.runs.recording import Opening, not_converged, opened
+from eulerplateau.runs.recording import (
+    Opening,
+    OpenRun,
+    kept_special,
+    not_converged,
+    opened,
+)
 from eulerplateau.runs.shape_files import read_state
-from eulerplateau.runs.table import table_content
+from eulerplateau.runs.table import write_special
 
 SPECIAL_COLUMNS = (
     "number", "kind", "sigma_hat", "ks_hat", "error", "branch", "step", "n_unstable",
@@ -30,7 +35,8 @@ SPECIAL_COLUMNS = (
 class CellRun:
     """What a run of a cell came to; `special` is empty for a sweep.
 
-    `kept` rows are an earlier call's, which was `finished` if nothing was left to do.
+    `kept` rows are an earlier call's, which was `finished` if nothing was left to do;
+    `before` says in a line what is done with what it left.
     """
 
     folder: Path
@@ -39,6 +45,7 @@ class CellRun:
     seconds: float
     kept: int = 0
     finished: bool = False
+    before: str = ""
 
     @property
     def failures(self) -> list[CellRow]:
@@ -78,7 +85,7 @@ def run_cell_sweep(
                 "of": len(pairs),
                 "not_converged": not_converged(run.rows),
             }
-    return CellRun(path, tuple(run.rows), (), run.seconds, run.kept, run.finished)
+    return _result(run, ())
 
 
 def cell_conflict(
@@ -102,56 +109,76 @@ def run_cell_branches(
 ) -> CellRun:
     """Explore a cell's branches into the folder `path`; rows appear as they come.
 
-    This very run, finished, is left as it is; unfinished, it starts again. Another run
-    raises ConflictError, or is replaced if `overwrite` is true.
+    This very run, finished, is left as it is; unfinished, it goes on. Another run raises
+    ConflictError, or is replaced if `overwrite` is true.
 
     Starts at the lowest value of the window, or at the cell's own where that lies inside,
     and goes both ways from there.
     """
     started = time.perf_counter()
     cell, window, varied = spec.cell.made(), spec.window(), spec.swept.parameter
+    opening = Opening("branches", CellBranchRow, varied, overwrite)
+    with opened(path, opening, describe(spec), started) as run:
+        special = kept_special(run)
+        if not run.finished:
+            write_special(run.folder.path, SPECIAL_COLUMNS, special)
+            for row in _recorded(_points(spec, cell, window, run), varied, run, special):
+                on_row(row)
+    return _result(run, tuple(special))
+
+
+def _points(
+    spec: CellRunSpec, cell: Cell, window: tuple[float, float], run: OpenRun[CellBranchRow]
+) -> Iterator[CellPoint]:
+    """Return the points that are not in the folder yet."""
+    varied = spec.swept.parameter
     own = getattr(spec.cell, varied)
     inside = varied in spec.cell.model_fields_set and window[0] < own < window[1]
-    start = solve_cell(cell, *spec.pair(own if inside else window[0]))
-    special: list[dict[str, Any]] = []
-    opening = Opening("branches", CellBranchRow, varied, overwrite, resumable=False)
-    with opened(path, opening, describe(spec), started) as run:
-        if run.finished:
-            return CellRun(path, tuple(run.rows), (), run.seconds, run.kept, True)
-        _write_special(path, special)
-        points = explore_cell(
-            cell,
-            "load" if varied == "sigma_hat" else "stiffness",
-            window,
-            start.ks_hat if varied == "sigma_hat" else start.sigma_hat,
-            start,
-            special_points=spec.branches.special_points,
-            unstable_modes=spec.branches.unstable_modes,
+    sigma_hat, ks_hat = spec.pair(own if inside else window[0])
+    return explore_cell(
+        cell,
+        "load" if varied == "sigma_hat" else "stiffness",
+        window,
+        ks_hat if varied == "sigma_hat" else sigma_hat,
+        solve_cell(cell, sigma_hat, ks_hat) if run.progress is None else None,
+        special_points=spec.branches.special_points,
+        unstable_modes=spec.branches.unstable_modes,
+        progress=run.progress,
+    )
+
+
+def _recorded(
+    points: Iterator[CellPoint],
+    varied: str,
+    run: OpenRun[CellBranchRow],
+    special: list[dict[str, Any]],
+) -> Iterator[CellBranchRow]:
+    """Write points as they come, special ones twice; yield their rows."""
+    for point in points:
+        mode = {} if point.special is None else {"critical_mode": point.special.mode}
+        row: CellBranchRow = record_cell(
+            run,
+            CellBranchRow,
+            varied,
+            point.equilibrium,
+            mode,
+            branch=point.branch,
+            origin=point.origin,
+            special=point.number,
+            arclength=point.point.arclength,
         )
-        for point in points:
-            mode = {} if point.special is None else {"critical_mode": point.special.mode}
-            row = record_cell(
-                run,
-                CellBranchRow,
-                varied,
-                point.equilibrium,
-                mode,
-                branch=point.branch,
-                origin=point.origin,
-                special=point.number,
-                arclength=point.point.arclength,
-            )
-            if point.special is not None and not point.known:
-                special.append(_special(row, point.special))
-                _write_special(path, special)
-            run.totals |= {"points": len(run.rows), "special": len(special)}
-            on_row(row)
-    return CellRun(path, tuple(run.rows), tuple(special), run.seconds)
+        if point.special is not None and not point.known:
+            special.append(_special(row, point.special))
+            write_special(run.folder.path, SPECIAL_COLUMNS, special)
+        if point.then is not None:
+            run.folder.keep(point.then.arrays)
+        run.totals |= {"points": len(run.rows), "special": len(special)}
+        yield row
 
 
-def _write_special(path: Path, special: list[dict[str, Any]]) -> None:
-    content = table_content(SPECIAL_COLUMNS, special)
-    write_whole(path / "special_points.csv", content)
+def _result(run: OpenRun[Any], special: tuple[dict[str, Any], ...]) -> CellRun:
+    rows, path = tuple(run.rows), run.folder.path
+    return CellRun(path, rows, special, run.seconds, run.kept, run.finished, run.before)
 
 
 def _special(row: CellBranchRow, special: SpecialPoint) -> dict[str, Any]:

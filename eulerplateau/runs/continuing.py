@@ -8,14 +8,22 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from itertools import compress, takewhile
 from pathlib import Path
 from typing import Any, Generic, TextIO, TypeVar
 
 from eulerplateau.errors import ConflictError, OutputError
-from eulerplateau.runs.folder import WRITER, check_is_run, read_summary, shape_name
+from eulerplateau.runs.checkpoint import Arrays, last_checkpoint
+from eulerplateau.runs.folder import (
+    TABLES,
+    WRITER,
+    check_is_run,
+    read_summary,
+    shape_name,
+)
 from eulerplateau.runs.rows import Record
 from eulerplateau.runs.shape_files import is_whole_shape
-from eulerplateau.runs.table import read_rows
+from eulerplateau.runs.table import has_row, read_rows
 
 # Raised when the same specification gives other numbers than before; not the package's.
 RESULTS = 1
@@ -35,11 +43,34 @@ class Lying(Generic[T]):
     rows : those that can be kept; the shape of the last one is whole
     finished : bool
     about : what run.json says; empty where there is nothing yet
+    progress : how an exploration goes on after these rows
+    lost : int, rows that are there but cannot be gone on from
     """
 
     rows: tuple[T, ...]
     finished: bool
     about: Mapping[str, Any]
+    progress: Arrays | None = None
+    lost: int = 0
+
+    def told(self, versions: Mapping[str, Any]) -> str:
+        """Return in a line what is done with what lies here; "" where nothing does.
+
+        `versions` are what run.json says of machine and libraries, as they are now.
+        """
+        if self.finished:
+            return f"finished before, {len(self.rows)} rows: nothing is computed"
+        if self.rows:
+            line = f"goes on after {len(self.rows)} rows of an earlier call"
+            if any(self.about.get(key) != value for key, value in versions.items()):
+                line += (
+                    ", on another machine or with other versions: as one that "
+                    "went through but for rounding"
+                )
+            return line
+        if self.lost:
+            return f"begins again: {self.lost} rows do not say how to go on from them"
+        return ""
 
 
 def look(
@@ -58,19 +89,36 @@ def look(
     """
     about = read_summary(path)
     table = path / f"{name}.csv"
-    rows = _whole_rows(path, table, row_type, quantity) if table.is_file() else []
-    if not rows and not _other_table(path, name):
+    lines = table.read_bytes().split(b"\n")[:-1] if table.is_file() else []
+    rows = _whole_rows(path, table, len(lines), row_type, quantity)
+    others = (path / f"{other}.csv" for other in TABLES if other != name)
+    if not rows and not any(has_row(other) for other in others):
         return Lying((), False, {})
     different = differences(about, summary) or (
         [] if rows else ["what is followed: sweep or branches"]
     )
+    finished = about.get("status") == "finished" and len(rows) == len(lines) - 1
     first = loads is not None and [row.load for row in rows] == list(loads[: len(rows)])
     if first and set(different) == _FOLLOWED & set(different):
-        whole = len(rows) == len(loads or ())
-        return Lying(tuple(rows), whole and about.get("status") == "finished", about)
+        finished, different = finished and len(rows) == len(loads or ()), []
     if different:
         raise ConflictError(path, different)
-    return Lying(tuple(rows), about.get("status") == "finished", about)
+    return (
+        Lying(tuple(rows), True, about)
+        if finished
+        else _unfinished(path, name, rows, about)
+    )
+
+
+def _unfinished(path: Path, name: str, rows: list[T], about: Mapping[str, Any]) -> Lying[T]:
+    """Return the rows that a run goes on from: of a sweep all of them."""
+    if name == "sweep":
+        return Lying(tuple(rows), False, about)
+    found = last_checkpoint(path, rows)
+    if found is None:
+        return Lying((), False, about, lost=len(rows))
+    kept, progress = found
+    return Lying(tuple(rows[:kept]), False, about, progress)
 
 
 def differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
@@ -101,31 +149,22 @@ def _flattened(prefix: str, section: Any) -> Iterator[tuple[str, Any]]:
         yield prefix, section
 
 
-def _other_table(path: Path, name: str) -> bool:
-    """Whether the folder has rows of the other kind of run."""
-    other = path / ("sweep.csv" if name == "branches" else "branches.csv")
-    with suppress(OSError):
-        return other.read_bytes().count(b"\n") > 1
-    return False
+def _whole_rows(
+    path: Path, table: Path, lines: int, row_type: type[T], quantity: str
+) -> list[T]:
+    """Return the rows up to the first that is not whole, or whose shape is not.
 
-
-def _whole_rows(path: Path, table: Path, row_type: type[T], quantity: str) -> list[T]:
-    """Return the rows up to the last whose shape is whole.
-
-    A row that power failed in is cut off with what follows it.
+    What power failed in is cut off with what follows it. `lines` are those of the table.
     """
-    lines = table.read_bytes().split(b"\n")
-    kept = lines[:-1]
-    while len(kept) > 1:
+    rows: list[T] = []
+    for count in range(lines, 1, -1):
         try:
-            rows = read_rows(table, row_type, quantity, lines=len(kept))
+            rows = read_rows(table, row_type, quantity, lines=count)
         except OutputError:
-            kept.pop()
             continue
-        if is_whole_shape(path / shape_name(rows[-1].step)):
-            return rows
-        kept.pop()
-    return []
+        break
+    shapes = (path / shape_name(row.step) for row in rows)
+    return list(compress(rows, takewhile(bool, map(is_whole_shape, shapes))))
 
 
 @contextmanager
@@ -135,10 +174,10 @@ def only_writer(path: Path) -> Iterator[None]:
     The lock is the process's: however that ends, it is gone. Raises OutputError for a
     folder that holds something else than a run, and leaves it alone.
     """
+    new = not path.exists()
     try:
-        if path.exists() and any(path.iterdir()):
+        if not new:
             check_is_run(path)
-        path.mkdir(parents=True, exist_ok=True)
         file = _locked(path / WRITER)
     except OSError as error:
         problem = f"cannot be made a run folder: {error.strerror}"
@@ -152,12 +191,18 @@ def only_writer(path: Path) -> Iterator[None]:
         finally:
             with suppress(OSError):
                 (path / WRITER).unlink()
+                if new:
+                    path.rmdir()  # where nothing came to be in it
 
 
 def _locked(path: Path) -> TextIO:
     """Return the file that says who writes, locked; ConflictError if another has it."""
     while True:
-        file = path.open("a+", encoding="ascii")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            file = path.open("a+", encoding="ascii")
+        except FileNotFoundError:
+            continue  # with the folder, by the one who had it before
         try:
             _lock(file)
         except OSError:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import csv
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,12 +18,18 @@ from eulerplateau.branches import (
 )
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
-from eulerplateau.mesh import Disk, write_whole
-from eulerplateau.runs.recording import Opening, OpenRun, make_mesh, recording
+from eulerplateau.mesh import Disk
+from eulerplateau.runs.recording import (
+    Opening,
+    Recorder,
+    kept_special,
+    make_mesh,
+    recording,
+)
 from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape, stored_start
-from eulerplateau.runs.table import table_content
+from eulerplateau.runs.table import write_special
 from eulerplateau.solvers import Equilibrium, Problem
 
 SPECIAL_COLUMNS = (
@@ -36,13 +41,19 @@ SPECIAL_COLUMNS = (
 
 @dataclass(frozen=True)
 class Exploration:
-    """What an exploration came to; `finished` if an earlier call had come to it."""
+    """What an exploration came to.
+
+    `kept` rows are an earlier call's, which was `finished` if there was nothing left to
+    do; `before` says in a line what is done with what it left.
+    """
 
     folder: Path
     rows: tuple[BranchRow, ...]
     special: tuple[dict[str, Any], ...]
     seconds: float
+    kept: int = 0
     finished: bool = False
+    before: str = ""
 
     @property
     def unresolved(self) -> int:
@@ -59,8 +70,8 @@ def run_branches(
 ) -> Exploration:
     """Explore the branches of `spec` into the folder `path`; rows appear as they come.
 
-    This very run, finished, is left as it is; unfinished, it starts again. Another run
-    raises ConflictError, or is replaced if `overwrite` is true.
+    This very run, finished, is left as it is; unfinished, it goes on. Another run raises
+    ConflictError, or is replaced if `overwrite` is true.
 
     Starts at the window's lowest load from the equilibrium a sweep would find there; with
     start.file from the equilibrium next to that shape, stable or not, at its own load.
@@ -71,48 +82,51 @@ def run_branches(
         raise SpecError("film.plane", "should be false: branches leave the plane")
     problem = Problem(disk, spec.film.model)
     window = _window(spec)
-    start = _start(spec, disk, problem, window)
-    special: list[dict[str, Any]] = []
     column = FILM_LOADS[spec.film.model].column
-    opening = Opening("branches", BranchRow, column, overwrite, resumable=False)
+    opening = Opening("branches", BranchRow, column, overwrite)
     with recording(spec, disk, path, opening, started) as recorder:
-        if recorder.run.finished:
-            return _as_it_is(recorder.run)
-        _write_special(path, special)
-        points = explore(
-            problem,
-            window,
-            start,
-            special_points=spec.branches.special_points,
-            unstable_modes=spec.branches.unstable_modes,
-        )
-        rows = recorder.run.rows
-        try:
-            for point in points:
-                row = recorder.record(
-                    point.equilibrium,
-                    _modes(point),
-                    branch=point.branch,
-                    origin=point.origin,
-                    special=point.number,
-                    arclength=point.point.arclength,
-                )
-                if point.special is not None and not point.known:
-                    special.append(_special(row, point.special))
-                    _write_special(path, special)
+        run = recorder.run
+        special = kept_special(run)
+        if not run.finished:
+            write_special(run.folder.path, SPECIAL_COLUMNS, special)
+            new = run.progress is None
+            points = explore(
+                problem,
+                window,
+                _start(spec, disk, problem, window) if new else None,
+                special_points=spec.branches.special_points,
+                unstable_modes=spec.branches.unstable_modes,
+                progress=run.progress,
+            )
+            for row in _recorded(points, recorder, special):
                 on_row(row)
-        finally:
-            recorder.run.totals |= {"points": len(rows), "special": len(special)}
-    return Exploration(path, tuple(rows), tuple(special), recorder.run.seconds)
+    rows, kept = tuple(run.rows), (run.kept, run.finished, run.before)
+    return Exploration(path, rows, tuple(special), run.seconds, *kept)
 
 
-def _as_it_is(run: OpenRun[BranchRow]) -> Exploration:
-    """Return what a finished exploration has come to."""
-    with (run.folder.path / "special_points.csv").open(
-        newline="", encoding="utf-8"
-    ) as file:
-        special = tuple({**line} for line in csv.DictReader(file))
-    return Exploration(run.folder.path, tuple(run.rows), special, run.seconds, True)
+def _recorded(
+    points: Iterator[FilmPoint],
+    recorder: Recorder[BranchRow],
+    special: list[dict[str, Any]],
+) -> Iterator[BranchRow]:
+    """Write points as they come, special ones twice; yield their rows."""
+    run = recorder.run
+    for point in points:
+        row = recorder.record(
+            point.equilibrium,
+            _modes(point),
+            branch=point.branch,
+            origin=point.origin,
+            special=point.number,
+            arclength=point.point.arclength,
+        )
+        if point.special is not None and not point.known:
+            special.append(_special(row, point.special))
+            write_special(run.folder.path, SPECIAL_COLUMNS, special)
+        if point.then is not None:
+            run.folder.keep(point.then.arrays)
+        run.totals |= {"points": len(run.rows), "special": len(special)}
+        yield row
 
 
 def _window(spec: RunSpec) -> tuple[float, float]:
@@ -146,11 +160,6 @@ def _modes(point: FilmPoint) -> dict[str, FloatArray]:
     """Return the critical mode, continued into the film as the film follows the loop."""
     mode = point.critical_mode
     return {} if mode is None else {"critical_mode": mode}
-
-
-def _write_special(path: Path, special: list[dict[str, Any]]) -> None:
-    content = table_content(SPECIAL_COLUMNS, special)
-    write_whole(path / "special_points.csv", content)
 
 
 def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:

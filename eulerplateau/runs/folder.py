@@ -8,8 +8,11 @@ later by others, diagram.png and pictures/shape_0000.png and so on.
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -19,9 +22,15 @@ from numpy.typing import NDArray
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import Disk, sync, write_whole
+from eulerplateau.runs.checkpoint import (
+    CHECKPOINTS,
+    Arrays,
+    remove_checkpoints,
+    write_checkpoint,
+)
 from eulerplateau.runs.rows import LoadName, Record, Row
 from eulerplateau.runs.shape_files import write_series, write_shape
-from eulerplateau.runs.table import RowWriter
+from eulerplateau.runs.table import SPECIAL, RowWriter, has_row
 
 # At most so much of the work is lost with the power.
 _SECOND = 1.0
@@ -31,13 +40,17 @@ _FEW = 200
 # In run.json: without it a folder is not ours, and nothing in it is ever removed.
 _MARK = {"program": "eulerplateau"}
 WRITER = ".writer"
+TABLES = "sweep", "branches"
+# In a folder that holds another run: where one that replaces it has its first row.
+_NEW = ".new"
 _OUR_FILES = (
     "sweep.csv",
     "sweep.pvd",
     "branches.csv",
     "branches.pvd",
     "branches.png",
-    "special_points.csv",
+    SPECIAL,
+    *CHECKPOINTS,
     "diagram.png",
     "shapes/shape_*.vtp",
     "pictures/shape_*.png",
@@ -60,15 +73,27 @@ class RunFolder:
     """
 
     def __init__(
-        self, path: Path, name: str, row_type: type[Any], kept: Sequence[Record] = ()
+        self,
+        path: Path,
+        name: str,
+        row_type: type[Any],
+        kept: Sequence[Record] = (),
+        replaces: Path | None = None,
     ) -> None:
-        """Open a folder that `create` has made, or one whose first rows are kept."""
+        """Open a folder that `create` has made, or one whose first rows are kept.
+
+        It takes the place of the run that it `replaces` with its first row.
+        """
         self.path = path
+        self._replaces = replaces
+        self._name, self._row_type = name, row_type
         self._shapes = [(row.step, row.load, shape_name(row.step)) for row in kept]
         self._load: LoadName | None = None
-        self._series = path / f"{name}.pvd"
         self._rows = RowWriter(path / f"{name}.csv", row_type, len(kept))
-        self._unlisted = False
+        self._closed = self._unlisted = False
+        self._unsynced: list[str] = []
+        self._unwritten: tuple[int, Callable[[], Arrays]] | None = None
+        self._checkpoints = 0
         self._synced = self._listed = self._list_shapes_seconds = 0.0
 
     @classmethod
@@ -81,19 +106,26 @@ class RunFolder:
     ) -> RunFolder:
         """Start a run in `path` with `summary` as its run.json; its table is `name`.csv.
 
-        An earlier run there is removed, which is to say its rows, shapes and pictures; a
-        folder that holds anything but a run, or a path that cannot be made a folder,
-        raises OutputError.
+        A run with rows that lies there is replaced, which is to say its rows, shapes and
+        pictures, once the new one has its first; a folder that holds anything but a run,
+        or a path that cannot be made a folder, raises OutputError.
         """
+        new = path / _NEW
         try:
-            if path.exists() and any(file.name != WRITER for file in path.iterdir()):
+            if path.exists():
+                check_is_run(path)
+                shutil.rmtree(new, ignore_errors=True)
+            lies = any(has_row(path / f"{table}.csv") for table in TABLES)
+            replaces = path if lies else None
+            if replaces is None and path.exists():
                 _remove_run(path)
-            (path / "shapes").mkdir(parents=True, exist_ok=True)
+            own = path if replaces is None else new
+            (own / "shapes").mkdir(parents=True, exist_ok=True)
         except OSError as error:
             problem = f"cannot be made a run folder: {error.strerror}"
             raise OutputError(path, problem) from None
-        _write_summary(path, summary)
-        return cls(path, name, row_type)
+        _write_summary(own, summary)
+        return cls(own, name, row_type, replaces=replaces)
 
     def record(
         self,
@@ -126,11 +158,52 @@ class RunFolder:
         if len(self._shapes) <= _FEW or now - self._listed >= 20 * spent:
             self._list_shapes()
         self._rows.append(row)
-        if now - self._synced >= _SECOND:
-            # A shape is synced before the row that promises it.
+        self._unsynced.append(name)
+        if self._replaces is not None:
+            self._take_place(self._replaces)
+        # With checkpoints a row counts from the next one on.
+        if not self._checkpoints and now - self._synced >= _SECOND:
+            self._sync()
+
+    def keep(self, arrays: Callable[[], Arrays]) -> None:
+        """Remember how the run goes on after the rows so far: on disk once a second."""
+        self._unwritten = len(self._shapes), arrays
+        if not self._checkpoints or time.monotonic() - self._synced >= _SECOND:
+            self._write_checkpoint()
+
+    def _write_checkpoint(self) -> None:
+        if self._unwritten is not None:
+            (rows, arrays), self._unwritten = self._unwritten, None
+            self._sync()
+            sync(self.path / SPECIAL)
+            write_checkpoint(self.path, self._checkpoints, rows, arrays())
+            self._checkpoints += 1
+
+    def _sync(self) -> None:
+        """See to it that rows outlive a loss of power; first the shapes they promise."""
+        for name in self._unsynced:
             sync(self.path / name)
-            self._rows.sync()
-            self._synced = now
+        self._unsynced.clear()
+        self._rows.sync()
+        self._synced = time.monotonic()
+
+    def _take_place(self, old: Path) -> None:
+        """Put what there is of this run in the place of another one.
+
+        That has no rows from the first moment on, and this one none up to the last.
+        """
+        try:
+            _remove_run(old)
+            (old / "shapes").mkdir(exist_ok=True)
+            self._rows.close()
+            files = [file for file in self.path.rglob("*") if file.is_file()]
+            for file in sorted(files, key=lambda file: file.suffix == ".csv"):
+                os.replace(file, old / file.relative_to(self.path))
+        except OSError as error:
+            raise OutputError(old, f"cannot be replaced: {error.strerror}") from None
+        shutil.rmtree(self.path, ignore_errors=True)
+        self.path, self._replaces = old, None
+        self._rows = RowWriter(old / f"{self._name}.csv", self._row_type, 1)
 
     def write_summary(self, summary: Mapping[str, object]) -> None:
         """Replace run.json by `summary`: plain data, all floats finite."""
@@ -141,15 +214,42 @@ class RunFolder:
         began = time.monotonic()
         if self._load is not None and self._unlisted:
             self._unlisted = False
-            write_series(self._series, self._shapes, self._load)
+            write_series(self.path / f"{self._name}.pvd", self._shapes, self._load)
         self._listed = time.monotonic()
         self._list_shapes_seconds = self._listed - began
 
     def close(self) -> None:
-        """Close the table, and list all shapes; everything else is already on disk."""
-        self._rows.sync()
-        self._rows.close()
-        self._list_shapes()
+        """List all shapes, and close the table; what is needed to go on is on disk.
+
+        A run without a row leaves the one that it was to replace.
+        """
+        if self._closed:
+            return
+        self._closed = True
+        try:
+            if self._replaces is not None:
+                shutil.rmtree(self.path, ignore_errors=True)
+                return
+            self._list_shapes()
+            self._sync()
+            self._write_checkpoint()
+        finally:
+            self._rows.close()
+
+    def finish(self, summary: Mapping[str, object]) -> None:
+        """Close the folder of a run that is over, with `summary` as its run.json."""
+        self._unwritten = None
+        self.close()
+        self.write_summary(summary)
+        sync(self.path / "run.json")
+        remove_checkpoints(self.path)
+
+    def discard(self) -> None:
+        """Remove what there is of a run without rows."""
+        _remove_run(self.path)
+        for file in (self.path / "run.json", self.path / "shapes"):
+            with suppress(OSError):
+                file.rmdir() if file.is_dir() else file.unlink()
 
     def __enter__(self) -> RunFolder:
         return self
@@ -170,14 +270,13 @@ def _write_summary(path: Path, summary: Mapping[str, object]) -> None:
 
 def check_is_run(path: Path) -> None:
     """Raise OutputError for a folder with files that is no run."""
-    files = [file for file in path.iterdir() if file.name != WRITER]
+    files = [file for file in path.iterdir() if file.name not in (WRITER, _NEW)]
     if files and not _is_run(path):
         problem = "holds something else than a run: name an empty or a new folder"
         raise OutputError(path, problem)
 
 
 def _remove_run(path: Path) -> None:
-    check_is_run(path)
     for pattern in _OUR_FILES:
         for file in path.glob(pattern):
             file.unlink()

@@ -60,8 +60,8 @@ def run_phase_diagram(
     special = _special(n)
     opening = Opening("sweep", CellRow, "sigma_hat", overwrite=True)
     with opened(path, opening, describe(spec), started) as run:
-        write_whole(path / "lines.csv", _table(points))
-        write_whole(path / "points.csv", _special_table(n, special))
+        write_whole(run.folder.path / "lines.csv", _table(points))
+        write_whole(run.folder.path / "points.csv", _special_table(n, special))
         diagram = PhaseDiagram(
             path, window.sigma_hat, window.ks_hat, lines, special, _sigma_p(n), {}, {}, 0.0
         )

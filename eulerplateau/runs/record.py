@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -17,7 +16,7 @@ from eulerplateau.runs.rows import LoadName, Record, columns
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
 from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
 from eulerplateau.runs.states import distinct_steps, stable_states
-from eulerplateau.runs.table import read_rows
+from eulerplateau.runs.table import SPECIAL, read_rows, read_special
 
 
 @dataclass(frozen=True, repr=False)
@@ -173,7 +172,7 @@ def _read(folder: Path) -> Run:
     explored = (folder / "branches.csv").is_file()
     if explored:
         rows = read_rows(folder / "branches.csv", kind.branch_row, column)
-        special = _special(folder / "special_points.csv")
+        special = read_special(folder / SPECIAL)
     elif (folder / "sweep.csv").is_file():
         rows = read_rows(folder / "sweep.csv", kind.row, column)
     else:
@@ -200,20 +199,6 @@ def _kind_of(about: Mapping[str, Any]) -> Kind:
 
         return CELL
     return FILM
-
-
-def _special(path: Path) -> dict[int, dict[str, str]]:
-    """Read special_points.csv, which an exploration that has met none may not have."""
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            return {int(line["number"]): dict(line) for line in csv.DictReader(file)}
-    except FileNotFoundError:
-        return {}
-    except OSError as error:
-        raise OutputError(path, f"cannot be read: {error.strerror}") from None
-    except (KeyError, ValueError):
-        problem = "is no table of special points: no column of whole numbers `number`"
-        raise OutputError(path, problem) from None
 
 
 def _names(folders: Sequence[Path]) -> list[str]:

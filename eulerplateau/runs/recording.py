@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from hashlib import sha256
 from importlib.metadata import version
@@ -17,12 +17,15 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from eulerplateau import __version__
 from eulerplateau.arrays import FloatArray
+from eulerplateau.errors import EulerPlateauError, OutputError
 from eulerplateau.film import FILM_LOADS, Load
 from eulerplateau.mesh import Disk, Measurer, generate, read_disk
+from eulerplateau.runs.checkpoint import Arrays
 from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.rows import Record, Row
 from eulerplateau.runs.spec import RunSpec, StoredMesh
+from eulerplateau.runs.table import SPECIAL, read_special
 from eulerplateau.solvers import Equilibrium
 
 # Matrices here are as large as the loop: a second thread waits more than it works.
@@ -41,6 +44,8 @@ class OpenRun(Generic[T]):
     rows : those that are on disk
     kept : int, how many of them an earlier call has left
     finished : bool, whether it had left all of them
+    progress : how an exploration goes on after them
+    before : str, what is done with what an earlier call has left, in a line
     totals : what run.json says when all is over
     """
 
@@ -49,6 +54,8 @@ class OpenRun(Generic[T]):
     rows: list[T] = field(default_factory=list)
     kept: int = 0
     finished: bool = False
+    progress: Arrays | None = None
+    before: str = ""
     totals: dict[str, Any] = field(default_factory=dict)
 
     @property
@@ -71,7 +78,6 @@ class Opening(Generic[T]):
     name : str, of its table, without .csv
     quantity : str, the column of what is varied
     overwrite : bool, whether another run that lies there is replaced
-    resumable : bool, whether rows of this very run are kept, and the run goes on from them
     loads : what the run follows, if a run of the first of them alone is to be continued
     """
 
@@ -79,7 +85,6 @@ class Opening(Generic[T]):
     row_type: type[T]
     quantity: str
     overwrite: bool = False
-    resumable: bool = True
     loads: Sequence[float] | None = None
 
 
@@ -96,33 +101,50 @@ def opened(
     """
     summary = {"results": RESULTS, **summary}
     with only_writer(path), threadpool_limits(BLAS_THREADS, user_api="blas"):
-        lying = _lying(path, opening, summary)
-        if lying.finished:
-            folder = RunFolder(path, opening.name, opening.row_type, lying.rows)
-            with folder:
-                yield OpenRun(folder, started, [*lying.rows], len(lying.rows), True)
-            return
-        summary |= {"versions": _versions(), "machine": platform.machine()}
-        with _folder(path, opening, summary, lying) as folder:
-            summary["blas_threads"] = blas_threads()
-            run = OpenRun(folder, started, [*lying.rows], len(lying.rows))
-            status = "interrupted"
-            try:
+        where = {"versions": _versions(), "machine": _machine()}
+        lying: Lying[T] = Lying((), False, {})
+        if not opening.overwrite:
+            how = opening.name, opening.row_type, opening.quantity, opening.loads
+            lying = look(path, summary, *how)
+        summary |= where
+        folder = _folder(path, opening, summary, lying)
+        run = OpenRun(
+            folder,
+            started,
+            [*lying.rows],
+            len(lying.rows),
+            lying.finished,
+            lying.progress,
+            lying.told(where),
+        )
+        with folder:
+            if run.finished:
                 yield run
-                status = "finished"
-            finally:
-                totals = {**run.totals, "seconds": run.seconds}
-                folder.write_summary({**summary, "status": status, "totals": totals})
+                return
+            summary["blas_threads"] = blas_threads()
+            yield from _carried_out(run, summary)
 
 
-def _lying(path: Path, opening: Opening[T], summary: dict[str, Any]) -> Lying[T]:
-    nothing: Lying[T] = Lying((), False, {})
-    if opening.overwrite:
-        return nothing
-    found = look(
-        path, summary, opening.name, opening.row_type, opening.quantity, opening.loads
-    )
-    return found if found.finished or opening.resumable else nothing
+def _carried_out(run: OpenRun[T], summary: dict[str, Any]) -> Iterator[OpenRun[T]]:
+    """Yield the run; then close its folder, with a run.json that says how it ended."""
+
+    def ended(status: str) -> dict[str, Any]:
+        totals = {**run.totals, "seconds": run.seconds}
+        return {**summary, "status": status, "totals": totals}
+
+    try:
+        yield run
+    except BaseException as error:
+        # Nothing that fails now hides what has failed.
+        with suppress(OutputError):
+            run.folder.close()
+        if run.rows or not isinstance(error, EulerPlateauError):
+            with suppress(OutputError):
+                run.folder.write_summary(ended("interrupted"))
+        else:
+            run.folder.discard()
+        raise
+    run.folder.finish(ended("finished"))
 
 
 def _folder(
@@ -132,7 +154,8 @@ def _folder(
     if not lying.rows:
         return RunFolder.create(path, running, opening.name, opening.row_type)
     folder = RunFolder(path, opening.name, opening.row_type, lying.rows)
-    folder.write_summary(running)
+    if not lying.finished:
+        folder.write_summary(running)
     return folder
 
 
@@ -168,6 +191,13 @@ def recording(
     with opened(path, opening, describe(spec, disk), started) as run:
         load = FILM_LOADS[spec.film.model]
         yield Recorder(run, Measurer(disk), load, opening.row_type, disk.digest)
+
+
+def kept_special(run: OpenRun[Any]) -> list[dict[str, Any]]:
+    """Return what the table of special points says of those among the rows kept."""
+    kept = {row.special for row in run.rows} - {None}
+    table = read_special(run.folder.path / SPECIAL) if kept else {}
+    return [{**told} for number, told in table.items() if number in kept]
 
 
 def blas_threads() -> list[int]:
@@ -210,6 +240,12 @@ def _digest(path: str | None) -> str | None:
         return None if path is None else sha256(Path(path).read_bytes()).hexdigest()
     except OSError:
         return None
+
+
+def _machine() -> str:
+    """Return the kind of processor, and for which of them BLAS computes."""
+    kinds = {pool.get("architecture", "") for pool in threadpool_info()}
+    return " ".join([platform.machine(), *sorted(kinds - {""})])
 
 
 def _versions() -> dict[str, str]:

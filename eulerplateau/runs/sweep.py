@@ -36,7 +36,7 @@ class RunResult:
 
     `neutral` numbers the rows with an eigenvalue that cannot be told from zero: whether
     they are stable is not known. `kept` rows are an earlier call's, which was `finished` if
-    there was nothing left to do.
+    there was nothing left to do; `before` says in a line what is done with what it left.
     """
 
     folder: Path
@@ -45,6 +45,7 @@ class RunResult:
     seconds: float
     kept: int = 0
     finished: bool = False
+    before: str = ""
 
     @property
     def failures(self) -> list[Row]:
@@ -101,9 +102,8 @@ def run_sweep(
                 "solver_seconds": sum(row.seconds for row in run.rows),
                 "neutral": neutral,
             }
-    return RunResult(
-        path, tuple(run.rows), tuple(neutral), run.seconds, run.kept, run.finished
-    )
+    rows, kept = tuple(run.rows), (run.kept, run.finished, run.before)
+    return RunResult(path, rows, tuple(neutral), run.seconds, *kept)
 
 
 def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictError | None:

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from eulerplateau.errors import OutputError
 from eulerplateau.film import SPRING_LOAD
+from eulerplateau.mesh import write_whole
 from eulerplateau.runs.rows import Record, Row, columns
 from eulerplateau.solvers import Status
 
@@ -22,6 +23,8 @@ _INTEGERS = {
 _MAY_BE_EMPTY = {
     "n_unstable", "lowest_eigenvalue", "self_intersections", "origin", "special"
 }  # fmt: skip
+
+SPECIAL = "special_points.csv"
 
 RowType = TypeVar("RowType", bound=Record)
 
@@ -95,6 +98,13 @@ class RowWriter:
             raise OutputError(self._path, problem) from None
 
 
+def has_row(table: Path) -> bool:
+    """Return whether a table has a row."""
+    with suppress(OSError):
+        return table.read_bytes().count(b"\n") > 1
+    return False
+
+
 def table_content(names: Sequence[str], lines: Sequence[Mapping[str, Any]]) -> bytes:
     """Return a table of lines {column: cell} as a CSV file holds it."""
     text = io.StringIO()
@@ -102,6 +112,30 @@ def table_content(names: Sequence[str], lines: Sequence[Mapping[str, Any]]) -> b
     writer.writeheader()
     writer.writerows(lines)
     return text.getvalue().encode()
+
+
+def write_special(
+    folder: Path, names: Sequence[str], points: Sequence[Mapping[str, Any]]
+) -> None:
+    """Write the special points of an exploration; raises OutputError."""
+    write_whole(folder / SPECIAL, table_content(names, points))
+
+
+def read_special(path: Path) -> dict[int, dict[str, str]]:
+    """Return what a table of special points says of each, by number.
+
+    An exploration that has met none may not have it. Raises OutputError.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            return {int(line["number"]): dict(line) for line in csv.DictReader(file)}
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise OutputError(path, f"cannot be read: {error.strerror}") from None
+    except (KeyError, ValueError):
+        problem = "is no table of special points: no column of whole numbers `number`"
+        raise OutputError(path, problem) from None
 
 
 def read_rows(

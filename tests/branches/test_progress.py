@@ -41,7 +41,7 @@ def told(point: Any) -> tuple[object, ...]:
 
 def springs() -> Callable[..., Iterator[Any]]:
     problem = Problem(read_disk(ROOT / "meshes" / "elongated.vtp"))
-    return partial(explore, problem, (640.0, 650.0), special_points=1)
+    return partial(explore, problem, (640.0, 670.0), special_points=1)
 
 
 def soap() -> Callable[..., Iterator[Any]]:

@@ -18,6 +18,13 @@ RESUME = click.option(
     help="Go on also from a run of the first of these loads. A run that was interrupted is "
     "continued without being asked.",
 )
+# Explorations have no loads to append: nothing is left to be asked for.
+GOES_ON = click.option(
+    "--resume",
+    is_flag=True,
+    expose_value=False,
+    help="Go on from a run that was interrupted, as is done without being asked.",
+)
 OVERWRITE = click.option(
     "--overwrite", is_flag=True, help="Replace another run that lies in the folder."
 )

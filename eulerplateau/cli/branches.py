@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.batch import OVERWRITE, before
+from eulerplateau.cli.batch import GOES_ON, OVERWRITE, before
 from eulerplateau.cli.overrides import load_single, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     help="Replace a key of the specification, as in branches.special_points=3.",
 )
 @click.option("--pictures/--no-pictures", default=True, help="Draw branches.png (default).")
+@GOES_ON
 @OVERWRITE
 @click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
 def branches(

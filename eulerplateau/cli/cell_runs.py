@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.batch import OVERWRITE, RESUME, before, carried_out
+from eulerplateau.cli.batch import GOES_ON, OVERWRITE, RESUME, before, carried_out
 from eulerplateau.cli.overrides import load_single, parse_setting, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -100,6 +100,7 @@ def _swept(
     help="Replace a key of the specification, as in branches.special_points=3.",
 )
 @_PICTURES
+@GOES_ON
 @OVERWRITE
 @_QUIET
 def branches(

@@ -16,7 +16,6 @@ from eulerplateau.branches import Arrays, explore
 from eulerplateau.cells import Cell, explore_cell, regular_sites
 from eulerplateau.mesh import Shape, read_disk
 from eulerplateau.solvers import Problem
-from tests.helpers.shapes import disk_points, mesh_of
 
 ROOT = Path(__file__).parents[2]
 
@@ -44,12 +43,6 @@ def springs() -> Callable[..., Iterator[Any]]:
     return partial(explore, problem, (640.0, 670.0), special_points=1)
 
 
-def soap() -> Callable[..., Iterator[Any]]:
-    points, triangles = disk_points(6)
-    problem = Problem(mesh_of(points * [1.3, 1.0], triangles), "area")
-    return partial(explore, problem, (1790.0, 1820.0), special_points=1)
-
-
 def cell() -> Callable[..., Iterator[Any]]:
     made = Cell(regular_sites(3), 8)
     return partial(explore_cell, made, "load", (50.0, 58.0), 100.0, special_points=1)
@@ -59,7 +52,6 @@ def cell() -> Callable[..., Iterator[Any]]:
     "exploration",
     [
         pytest.param(springs, id="springs"),
-        pytest.param(soap, id="soap film"),
         pytest.param(cell, id="cell"),
     ],
 )

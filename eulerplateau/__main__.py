@@ -1,6 +1,11 @@
-"""`python -m eulerplateau` is the command `eulerplateau`."""
+"""`python -m eulerplateau` is the command `eulerplateau`, and begins here, too."""
 
-from eulerplateau.cli import main
+from eulerplateau.interruption import listen
+
+# Before anything else is loaded, which takes its time.
+listen()
+
+from eulerplateau.cli import main  # noqa: E402
 
 if __name__ == "__main__":
     main()

@@ -9,6 +9,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.family import Family
+from eulerplateau.interruption import heed
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import (
     RESIDUAL_TOLERANCE,
@@ -165,6 +166,7 @@ def _correct(
     x = constraint.project(guess)
     best, guessed = np.inf, value
     for corrections in range(_CORRECTIONS):
+        heed()
         if x is None or value <= control.least or not np.isfinite(value):
             return None
         try:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import logging
-import signal
+import os
 import sys
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import click
 
@@ -20,9 +20,9 @@ from eulerplateau.cli.plot import plot
 from eulerplateau.cli.render import render
 from eulerplateau.cli.sweep import sweep
 from eulerplateau.errors import EulerPlateauError, OutputError
+from eulerplateau.interruption import Interrupted, heed, stop_listening, working_on
 
-# What shells add to a signal's number; 130 is SIGINT, 143 SIGTERM, 129 SIGHUP.
-_SIGNALLED = 128
+_INTERRUPTED = 130
 
 EXIT_CODES = """\b
 Exit codes: 0 all is well; 2 the specification or the arguments are wrong;
@@ -35,6 +35,7 @@ by SIGINT, SIGTERM, SIGHUP."""
 @click.version_option(__version__, prog_name="eulerplateau")
 def commands() -> None:
     """Shapes of elastic loops spanned by soap films: the Euler-Plateau problem."""
+    working_on(lambda: "")
 
 
 commands.add_command(branches)
@@ -51,44 +52,38 @@ commands.add_command(sweep)
 def main() -> NoReturn:
     """Run the command line; every error a user can cause is one line and an exit code."""
     logging.basicConfig(format="eulerplateau: %(message)s", level=logging.WARNING)
-    _catch_signals()
     try:
+        code = _code()
+        stop_listening()
+    except Interrupted as end:
+        _say(str(end))
+        code = end.code
+    sys.exit(code)
+
+
+def _code() -> int:
+    """Carry out the command; return its exit code."""
+    try:
+        heed()
         code = commands.main(prog_name="eulerplateau", standalone_mode=False)
+        sys.stdout.flush()
     except click.exceptions.Exit as end:
         code = end.exit_code
     except click.ClickException as error:
         error.show()
         code = error.exit_code
-    except (click.Abort, KeyboardInterrupt) as end:
-        _say("interrupted; what was computed is in the run folder")
-        code = _SIGNALLED + getattr(end.__cause__ or end, "number", signal.SIGINT)
+    except (click.Abort, KeyboardInterrupt):  # where nobody listens to signals
+        _say("interrupted")
+        code = _INTERRUPTED
     except EulerPlateauError as error:
         _say(str(error))
         code = error.exit_code
     except OSError as error:
         _say(f"{error.filename or 'a file'}: {error.strerror or error}")
         code = OutputError.exit_code
-    sys.exit(code if isinstance(code, int) else 0)
-
-
-class _Signalled(KeyboardInterrupt):
-    """An interruption by another signal than that of Ctrl-C, of this number."""
-
-    number: int
-
-
-def _catch_signals() -> None:
-    """Make SIGTERM and SIGHUP interrupt as Ctrl-C does, unless they are ignored."""
-    for name in ("SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)  # Windows has no SIGHUP
-        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _interrupt)
-
-
-def _interrupt(number: int, _frame: Any) -> NoReturn:
-    end = _Signalled()
-    end.number = number
-    raise end
+        # What could not be written is not tried again at the end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    return code if isinstance(code, int) else 0
 
 
 def _say(text: str) -> None:

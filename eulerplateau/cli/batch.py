@@ -9,6 +9,7 @@ from typing import TypeVar
 import click
 
 from eulerplateau.errors import ConflictError, EulerPlateauError
+from eulerplateau.interruption import heed, working_on
 
 S = TypeVar("S")
 
@@ -49,12 +50,19 @@ def carried_out(
         return max(error.exit_code for error in conflicts)
     code = 0
     for spec, folder in runs:
+        begin(folder)
         try:
             code = max(code, one(spec, folder))
         except EulerPlateauError as error:
             click.echo(f"eulerplateau: {folder}: {error}", err=True)
             code = max(code, error.exit_code)
     return code
+
+
+def begin(folder: Path) -> None:
+    """Say from now on, should a signal come, that nothing is in a folder yet."""
+    working_on(lambda: f"{folder}: nothing is there yet")
+    heed()
 
 
 def before(folder: Path, line: str) -> None:

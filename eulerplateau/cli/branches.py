@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.batch import GOES_ON, OVERWRITE, before
+from eulerplateau.cli.batch import GOES_ON, OVERWRITE, before, begin
 from eulerplateau.cli.overrides import load_single, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -53,6 +53,7 @@ def branches(
     run = load_single(spec, settings, load_run)
     name = run_name(spec, single_values(settings))
     folder = out or spec.with_name(f"{name}-branches")
+    begin(folder)
     result = _explore(run, folder, quiet, overwrite)
     drawn = ["branches.csv", "special_points.csv", "branches.pvd"]
     if pictures:

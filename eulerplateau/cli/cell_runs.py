@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.batch import GOES_ON, OVERWRITE, RESUME, before, carried_out
+from eulerplateau.cli.batch import GOES_ON, OVERWRITE, RESUME, before, begin, carried_out
 from eulerplateau.cli.overrides import load_single, parse_setting, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -122,6 +122,7 @@ def branches(
     run = load_single(spec, settings, load_cell_run)
     name = run_name(spec, single_values(settings))
     folder = out or spec.with_name(f"{name}-branches")
+    begin(folder)
     result = _shown(
         lambda show: run_cell_branches(run, folder, show, overwrite=overwrite),
         quiet,

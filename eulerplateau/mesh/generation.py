@@ -8,6 +8,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, SpecError
+from eulerplateau.interruption import heed
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.gmsh_library import started_gmsh
 from eulerplateau.mesh.polygon import perimeter, polygon_area, subdivide, to_unit_scale
@@ -115,6 +116,7 @@ def _triangulate(
     angle = _ANGLES.get(spec.algorithm, 0.0)
     # Twelve digits: a change of units, or another libm, must not change the mesh.
     finest = float(f"{inside / size:.12g}")
+    heed()
     gmsh.clear()
     gmsh.option.setNumber("Mesh.Algorithm", spec.algorithm)
     gmsh.option.setNumber("Mesh.MeshSizeMin", finest)

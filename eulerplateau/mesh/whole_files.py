@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from threading import get_ident
 
 from eulerplateau.errors import OutputError
 
@@ -37,7 +38,7 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     It has the extension of `path`. Raises and leaves behind what `write_whole` does.
     """
-    temporary = path.with_name(f".{os.getpid()}.{path.name}")
+    temporary = path.with_name(f".{os.getpid()}-{get_ident()}.{path.name}")
     try:
         try:
             yield temporary

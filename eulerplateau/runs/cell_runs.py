@@ -11,6 +11,7 @@ from typing import Any
 from eulerplateau.branches import SpecialPoint
 from eulerplateau.cells import ENDS, Cell, CellPoint, explore_cell, solve_cell, sweep_cell
 from eulerplateau.errors import ConflictError
+from eulerplateau.interruption import heed
 from eulerplateau.runs.cell_recording import describe, record_cell
 from eulerplateau.runs.cell_spec import CellRunSpec
 from eulerplateau.runs.cell_table import CellBranchRow, CellRow
@@ -80,6 +81,7 @@ def run_cell_sweep(
         start = read_state(run.last_shape)[0].x[:, :2] if run.kept else None
         for found in sweep_cell(cell, left, start, max_iterations=spec.max_iterations):
             on_row(record_cell(run, CellRow, spec.swept.parameter, found))
+            heed()
             run.totals |= {
                 "values": len(run.rows),
                 "of": len(pairs),
@@ -124,6 +126,7 @@ def run_cell_branches(
             write_special(run.folder.path, SPECIAL_COLUMNS, special)
             for row in _recorded(_points(spec, cell, window, run), varied, run, special):
                 on_row(row)
+                heed()
     return _result(run, tuple(special))
 
 

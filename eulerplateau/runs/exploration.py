@@ -18,6 +18,7 @@ from eulerplateau.branches import (
 )
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
+from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk
 from eulerplateau.runs.recording import (
     Opening,
@@ -100,6 +101,7 @@ def run_branches(
             )
             for row in _recorded(points, recorder, special):
                 on_row(row)
+                heed()
     rows, kept = tuple(run.rows), (run.kept, run.finished, run.before)
     return Exploration(path, rows, tuple(special), run.seconds, *kept)
 

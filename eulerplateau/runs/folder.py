@@ -85,7 +85,7 @@ class RunFolder:
         It takes the place of the run that it `replaces` with its first row.
         """
         self.path = path
-        self._replaces = replaces
+        self.replaces = replaces
         self._name, self._row_type = name, row_type
         self._shapes = [(row.step, row.load, shape_name(row.step)) for row in kept]
         self._load: LoadName | None = None
@@ -159,8 +159,8 @@ class RunFolder:
             self._list_shapes()
         self._rows.append(row)
         self._unsynced.append(name)
-        if self._replaces is not None:
-            self._take_place(self._replaces)
+        if self.replaces is not None:
+            self._take_place(self.replaces)
         # With checkpoints a row counts from the next one on.
         if not self._checkpoints and now - self._synced >= _SECOND:
             self._sync()
@@ -202,7 +202,7 @@ class RunFolder:
         except OSError as error:
             raise OutputError(old, f"cannot be replaced: {error.strerror}") from None
         shutil.rmtree(self.path, ignore_errors=True)
-        self.path, self._replaces = old, None
+        self.path, self.replaces = old, None
         self._rows = RowWriter(old / f"{self._name}.csv", self._row_type, 1)
 
     def write_summary(self, summary: Mapping[str, object]) -> None:
@@ -227,7 +227,7 @@ class RunFolder:
             return
         self._closed = True
         try:
-            if self._replaces is not None:
+            if self.replaces is not None:
                 shutil.rmtree(self.path, ignore_errors=True)
                 return
             self._list_shapes()

@@ -24,6 +24,7 @@ from eulerplateau.exact.cell import (
     star,
     symmetry_breaking,
 )
+from eulerplateau.interruption import heed
 from eulerplateau.mesh import write_whole
 from eulerplateau.runs.cell_recording import describe, record_cell
 from eulerplateau.runs.cell_spec import CellRunSpec, PhaseDiagramSettings
@@ -137,6 +138,7 @@ def _again(points: Sequence[SymmetryBreaking]) -> bool:
 def _counted(
     on_point: Callable[[str], None], point: Transition | None
 ) -> Transition | None:
+    heed()
     on_point("" if point is None else f"{point.sigma_hat:.4g}, {point.ks_hat:.4g}")
     return point
 

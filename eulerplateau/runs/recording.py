@@ -19,6 +19,7 @@ from eulerplateau import __version__
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import EulerPlateauError, OutputError
 from eulerplateau.film import FILM_LOADS, Load
+from eulerplateau.interruption import working_on
 from eulerplateau.mesh import Disk, Measurer, generate, read_disk
 from eulerplateau.runs.checkpoint import Arrays
 from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
@@ -132,6 +133,14 @@ def _carried_out(run: OpenRun[T], summary: dict[str, Any]) -> Iterator[OpenRun[T
         totals = {**run.totals, "seconds": run.seconds}
         return {**summary, "status": status, "totals": totals}
 
+    def words() -> str:
+        held = run.folder.replaces
+        if held is not None:
+            return f"{held}: nothing of it is there yet, and what was there still is"
+        rows = f"{len(run.rows)} rows are" if run.rows else "nothing is"
+        return f"{run.folder.path}: {rows} there" + ("" if run.rows else " yet")
+
+    working_on(words, lambda: run.folder.write_summary(ended("interrupted")))
     try:
         yield run
     except BaseException as error:
@@ -145,6 +154,7 @@ def _carried_out(run: OpenRun[T], summary: dict[str, Any]) -> Iterator[OpenRun[T
             run.folder.discard()
         raise
     run.folder.finish(ended("finished"))
+    working_on(words)
 
 
 def _folder(

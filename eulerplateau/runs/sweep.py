@@ -12,6 +12,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import ConflictError, EulerPlateauError
 from eulerplateau.film import FILM_LOADS
+from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.runs.continuing import look
 from eulerplateau.runs.folder import shape_name
@@ -94,6 +95,7 @@ def run_sweep(
                 row = recorder.record(found, _modes(spec, problem, found))
                 neutral += [row.step] if found.n_neutral else []
                 on_row(row)
+                heed()
         finally:
             run.totals |= {
                 "loads": len(run.rows),

@@ -23,6 +23,7 @@ from scipy.linalg import LinAlgError
 from scipy.optimize import minimize
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.interruption import heed
 from eulerplateau.loop import kernels
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import (
@@ -115,6 +116,7 @@ def _descend(
     penalty, stretched = _first_penalty(problem, load), np.inf
     iterate, at_rest = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True
     while True:
+        heed()
         try:
             shape = iterate.shape if at_rest else _rested(problem, iterate.shape)
             shape = problem.film.prepared(shape)

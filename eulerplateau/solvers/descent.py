@@ -16,6 +16,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.interruption import heed
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability, Status
 from eulerplateau.solvers.models import Models
@@ -60,6 +61,7 @@ class Descent:
         state = State(self.models.at(x), _FIRST_RADIUS, 0)
         close = _CLOSE
         while state.iteration < self.max_iterations:
+            heed()
             if _at_rounding(state.model):
                 found = self.models.spectrum(state.model)
                 state = replace(state, stability=found)

@@ -28,6 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.interruption import heed
 from eulerplateau.loop import TURNS, Loop, LoopEnergy, backward_differences, differences
 from eulerplateau.solvers.equilibrium import Settled
 
@@ -72,6 +73,7 @@ def settle(
         return None
     balance = _balance(energy, loop, x, tensions)
     for iteration in range(min(limit, _LIMIT) + 1):
+        heed()
         if balance.error <= balance.rounding:
             return Settled(x, tensions, iteration)
         if iteration == limit:

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import logging
+import math
 import signal
 import subprocess
 import sys
+import time
+from contextlib import suppress
+from subprocess import DEVNULL, PIPE
+
+from eulerplateau.interruption import heed
 
 _log = logging.getLogger(__name__)
+
+# Seconds; a child that ends is noticed at once.
+_BETWEEN_LOOKS = 0.2
 
 
 def draw_in_child(module: str, *arguments: str, timeout: float) -> bool:
@@ -28,20 +37,22 @@ def failure_of_child(module: str, *arguments: str, timeout: float | None) -> str
     Waits `timeout` seconds at most; for ever if it is None.
     """
     command = [sys.executable, "-m", module, *arguments]
+    limit = math.inf if timeout is None else time.monotonic() + timeout
     try:
-        done = subprocess.run(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            timeout=timeout,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return f"no answer after {timeout:g} s"
+        child = subprocess.Popen(command, stdin=DEVNULL, stdout=DEVNULL, stderr=PIPE)
     except OSError as error:
         return f"cannot be started: {error.strerror}"
-    return _reason(done.returncode, done.stderr) if done.returncode else ""
+    with child:
+        try:
+            while True:
+                heed()
+                with suppress(subprocess.TimeoutExpired):
+                    _, said = child.communicate(timeout=_BETWEEN_LOOKS)
+                    return _reason(child.returncode, said) if child.returncode else ""
+                if time.monotonic() > limit:
+                    return f"no answer after {timeout:g} s"
+        finally:
+            child.kill()  # which does nothing to one that has ended
 
 
 def _reason(code: int, stderr: bytes) -> str:

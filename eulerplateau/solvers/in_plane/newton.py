@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.interruption import heed
 from eulerplateau.loop import Loop
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.in_plane.chain import Chain, Factors, Point
@@ -136,6 +137,7 @@ def _settle(chain: Chain, angles: FloatArray, limit: int) -> _ChainEquilibrium |
     point, last = chain.at(angles), np.inf
     pull = chain.pull(point)
     for iteration in range(1, min(limit, _LIMIT) + 1):
+        heed()
         factors = chain.factors(point, pull, 0.0)
         turns, pull = chain.step(factors)
         size = float(np.abs(turns).max())
@@ -167,6 +169,7 @@ def _find_minimum(
     point, shift, last, saddles = chain.at(start), 0.0, np.inf, 0
     pull = chain.pull(point)
     for iteration in range(1, limit + 1):
+        heed()
         factors, shift = _shift_until_convex(chain, point, pull, shift)
         turns, pull = chain.step(factors)
         size = float(np.abs(turns).max())

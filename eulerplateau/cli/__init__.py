@@ -65,10 +65,11 @@ def _code() -> int:
     """Carry out the command; return its exit code."""
     try:
         heed()
-        code = commands.main(prog_name="eulerplateau", standalone_mode=False)
+        try:
+            code = commands.main(prog_name="eulerplateau", standalone_mode=False)
+        except click.exceptions.Exit as end:
+            code = end.exit_code
         sys.stdout.flush()
-    except click.exceptions.Exit as end:
-        code = end.exit_code
     except click.ClickException as error:
         error.show()
         code = error.exit_code

@@ -20,5 +20,9 @@ from .triangles import (
     unit as unit,
 )
 from .waist import waist_path as waist_path
-from .whole_files import sync as sync, write_whole as write_whole
+from .whole_files import (
+    TEMPORARY as TEMPORARY,
+    sync as sync,
+    write_whole as write_whole,
+)
 from .writing import write_vtp as write_vtp

@@ -10,6 +10,9 @@ from threading import get_ident
 
 from eulerplateau.errors import OutputError
 
+# How the names of files begin that are not whole yet; a process that is killed leaves them.
+TEMPORARY = ".new-"
+
 
 def write_whole(path: Path, content: bytes) -> None:
     """Replace `path` by `content` in one step, through a temporary name beside it.
@@ -38,7 +41,7 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     It has the extension of `path`. Raises and leaves behind what `write_whole` does.
     """
-    temporary = path.with_name(f".{os.getpid()}-{get_ident()}.{path.name}")
+    temporary = path.with_name(f"{TEMPORARY}{os.getpid()}-{get_ident()}.{path.name}")
     try:
         try:
             yield temporary

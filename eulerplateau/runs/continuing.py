@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Generic, TextIO, TypeVar
 
 from eulerplateau.errors import ConflictError, OutputError
+from eulerplateau.mesh import TEMPORARY
 from eulerplateau.runs.checkpoint import Arrays, last_checkpoint
 from eulerplateau.runs.folder import (
     TABLES,
@@ -186,6 +187,7 @@ def only_writer(path: Path) -> Iterator[None]:
         file.truncate(0)
         file.write(f"process {os.getpid()} on {platform.node()}\n")
         file.flush()
+        _remove_halves(path)
         try:
             yield
         finally:
@@ -193,6 +195,14 @@ def only_writer(path: Path) -> Iterator[None]:
                 (path / WRITER).unlink()
                 if new:
                     path.rmdir()  # where nothing came to be in it
+
+
+def _remove_halves(path: Path) -> None:
+    """Remove what a process that was killed has not finished writing."""
+    for name in ("run.json", "*.csv", "*.pvd", ".checkpoint*", "shape_*.vtp"):
+        for folder in (path, path / "shapes"):
+            for file in folder.glob(f"{TEMPORARY}*.{name.removeprefix('.')}"):
+                file.unlink(missing_ok=True)
 
 
 def _locked(path: Path) -> TextIO:

@@ -120,11 +120,13 @@ class RunFolder:
             if replaces is None and path.exists():
                 _remove_run(path)
             own = path if replaces is None else new
-            (own / "shapes").mkdir(parents=True, exist_ok=True)
+            own.mkdir(parents=True, exist_ok=True)
+            # First of all, so that the folder is known for a run's whatever comes.
+            _write_summary(own, summary)
+            (own / "shapes").mkdir(exist_ok=True)
         except OSError as error:
             problem = f"cannot be made a run folder: {error.strerror}"
             raise OutputError(path, problem) from None
-        _write_summary(own, summary)
         return cls(own, name, row_type, replaces=replaces)
 
     def record(
@@ -270,7 +272,8 @@ def _write_summary(path: Path, summary: Mapping[str, object]) -> None:
 
 def check_is_run(path: Path) -> None:
     """Raise OutputError for a folder with files that is no run."""
-    files = [file for file in path.iterdir() if file.name not in (WRITER, _NEW)]
+    ours = WRITER, _NEW
+    files = [file.name for file in path.iterdir() if not file.name.startswith(ours)]
     if files and not _is_run(path):
         problem = "holds something else than a run: name an empty or a new folder"
         raise OutputError(path, problem)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-import signal
-import time
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -14,7 +13,6 @@ from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.rows import COLUMNS
 from eulerplateau.runs.table import read_rows
 from tests.helpers.command import Shell, command_line, run_here, run_in_shell
-from tests.helpers.processes import PATIENCE, started
 
 
 def sweep(*words: object, cwd: Path | None = None) -> Shell:
@@ -224,27 +222,12 @@ def test_one_bad_run_of_many_costs_the_others_nothing(spec: Path, tmp_path: Path
     assert len(read_rows(spec.with_suffix("") / "sweep.csv")) == 2
 
 
-@pytest.mark.parametrize(("name", "code"), [("INT", 130), ("TERM", 143), ("HUP", 129)])
-def test_interrupted_sweep_ends_with_its_code_and_keeps_its_rows(
-    spec: Path, name: str, code: int
-) -> None:
-    edit(spec, "[500, 900]", "[{start = 1, stop = 3000, step = 0.1}]")
-    table = spec.with_suffix("") / "sweep.csv"
-    with started(command_line("sweep", "--no-pictures", "--quiet", spec)) as process:
-        deadline = time.monotonic() + PATIENCE
-        while not (table.exists() and table.read_bytes().count(b"\n") > 3):
-            assert process.poll() is None
-            assert time.monotonic() < deadline
-            time.sleep(0.02)
-        process.send_signal(signal.Signals[f"SIG{name}"])
-        _, said = process.communicate(timeout=PATIENCE)
-    assert process.returncode == code
-    assert len(said.strip().splitlines()) == 1
-    rows = read_rows(table)
-    assert len(rows) >= 3
-    summary = json.loads((table.parent / "run.json").read_text())
-    assert summary["status"] == "interrupted"
-    assert summary["totals"]["loads"] == len(rows)
+def test_output_on_a_full_disk_ends_with_5() -> None:
+    words = command_line("--version")
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(words, stdout=full, stderr=subprocess.PIPE, check=False)
+    assert done.returncode == 5
+    assert done.stderr.count(b"\n") == 1
 
 
 def test_mesh_command_writes_a_mesh_that_sweep_takes(tmp_path: Path) -> None:

@@ -4,11 +4,6 @@ from __future__ import annotations
 
 import csv
 import os
-import random
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -171,33 +166,3 @@ def test_command_line_refuses_before_any_run_computes(mesh, tmp_path):
     again = run_here("sweep", *words[:3])
     assert again.returncode == 0
     assert again.stderr.count("finished before") == 2
-
-
-def killed_until_finished(words: list[str], seconds: float, dice: random.Random) -> int:
-    """Start a program again and again, killed at a random moment; return how often."""
-    for starts in range(1, 100):
-        program = subprocess.Popen(words, stderr=subprocess.DEVNULL)
-        try:
-            program.wait(dice.uniform(0.5, 1.5) * seconds)
-        except subprocess.TimeoutExpired:
-            program.send_signal(signal.SIGKILL)
-            program.wait()
-        else:
-            return starts
-    raise AssertionError("the run does not get on")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(10))
-def test_sweep_killed_at_random_moments_ends_as_one_that_went_through(mesh, tmp_path, seed):
-    path = tmp_path / "run.toml"
-    loads = "[{ start = 500.0, stop = 780.0, step = 5.0 }]"
-    path.write_text(f'[mesh]\nfile = "{mesh}"\n[sweep]\nloads = {loads}\n')
-    words = [sys.executable, "-m", "eulerplateau", "sweep", str(path), "--no-pictures"]
-    began = time.monotonic()
-    whole = [*words, "--quiet", "--out", str(tmp_path / "whole")]
-    assert subprocess.run(whole, check=False).returncode == 0
-    seconds = time.monotonic() - began
-    parts = [*words, "--quiet", "--out", str(tmp_path / "parts")]
-    killed_until_finished(parts, seconds, random.Random(seed))
-    assert everything(tmp_path / "parts") == everything(tmp_path / "whole")

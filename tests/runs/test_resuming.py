@@ -28,7 +28,7 @@ ROOT = Path(__file__).parents[2]
 WINDOW = {"branches.load_min": 640.0, "branches.load_max": 670.0}
 CELL = CellRunSpec(
     cell={"adhesions": 3, "edges_per_side": 8, "ks_hat": 100.0},
-    sweep={"values": [50.0, 58.0]},
+    sweep={"values": [55.0, 57.0]},
     branches={"special_points": 1},
 )
 RUNS = {"springs": run_branches, "soap": run_branches, "cell": run_cell_branches}

@@ -19,12 +19,11 @@ from eulerplateau.runs.continuing import look
 from eulerplateau.runs.recording import (
     Opening,
     OpenRun,
-    kept_special,
     not_converged,
     opened,
 )
 from eulerplateau.runs.shape_files import read_state
-from eulerplateau.runs.table import write_special
+from eulerplateau.runs.table import special_of, write_special
 
 SPECIAL_COLUMNS = (
     "number", "kind", "sigma_hat", "ks_hat", "error", "branch", "step", "n_unstable",
@@ -121,7 +120,7 @@ def run_cell_branches(
     cell, window, varied = spec.cell.made(), spec.window(), spec.swept.parameter
     opening = Opening("branches", CellBranchRow, varied, overwrite)
     with opened(path, opening, describe(spec), started) as run:
-        special = kept_special(run)
+        special = special_of(run.rows, run.folder.path)
         if not run.finished:
             write_special(run.folder.path, SPECIAL_COLUMNS, special)
             for row in _recorded(_points(spec, cell, window, run), varied, run, special):

@@ -23,7 +23,7 @@ from eulerplateau.runs.folder import (
     shape_name,
 )
 from eulerplateau.runs.rows import Record
-from eulerplateau.runs.shape_files import is_whole_shape
+from eulerplateau.runs.shape_files import ends_as_shape, is_whole_shape
 from eulerplateau.runs.table import has_row, read_rows
 
 # Raised when the same specification gives other numbers than before; not the package's.
@@ -165,7 +165,10 @@ def _whole_rows(
             continue
         break
     shapes = (path / shape_name(row.step) for row in rows)
-    return list(compress(rows, takewhile(bool, map(is_whole_shape, shapes))))
+    rows = list(compress(rows, takewhile(bool, map(ends_as_shape, shapes))))
+    while rows and not is_whole_shape(path / shape_name(rows[-1].step)):
+        rows.pop()
+    return rows
 
 
 @contextmanager

@@ -23,14 +23,13 @@ from eulerplateau.mesh import Disk
 from eulerplateau.runs.recording import (
     Opening,
     Recorder,
-    kept_special,
     make_mesh,
     recording,
 )
 from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import start_shape, stored_start
-from eulerplateau.runs.table import write_special
+from eulerplateau.runs.table import special_of, write_special
 from eulerplateau.solvers import Equilibrium, Problem
 
 SPECIAL_COLUMNS = (
@@ -87,7 +86,7 @@ def run_branches(
     opening = Opening("branches", BranchRow, column, overwrite)
     with recording(spec, disk, path, opening, started) as recorder:
         run = recorder.run
-        special = kept_special(run)
+        special = special_of(run.rows, run.folder.path)
         if not run.finished:
             write_special(run.folder.path, SPECIAL_COLUMNS, special)
             new = run.progress is None

@@ -26,7 +26,6 @@ from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.rows import Record, Row
 from eulerplateau.runs.spec import RunSpec, StoredMesh
-from eulerplateau.runs.table import SPECIAL, read_special
 from eulerplateau.solvers import Equilibrium
 
 # Matrices here are as large as the loop: a second thread waits more than it works.
@@ -45,6 +44,7 @@ class OpenRun(Generic[T]):
     rows : those that are on disk
     kept : int, how many of them an earlier call has left
     finished : bool, whether it had left all of them
+    about : what run.json said of them
     progress : how an exploration goes on after them
     before : str, what is done with what an earlier call has left, in a line
     totals : what run.json says when all is over
@@ -55,6 +55,7 @@ class OpenRun(Generic[T]):
     rows: list[T] = field(default_factory=list)
     kept: int = 0
     finished: bool = False
+    about: Mapping[str, Any] = field(default_factory=dict)
     progress: Arrays | None = None
     before: str = ""
     totals: dict[str, Any] = field(default_factory=dict)
@@ -115,6 +116,7 @@ def opened(
             [*lying.rows],
             len(lying.rows),
             lying.finished,
+            lying.about,
             lying.progress,
             lying.told(where),
         )
@@ -201,13 +203,6 @@ def recording(
     with opened(path, opening, describe(spec, disk), started) as run:
         load = FILM_LOADS[spec.film.model]
         yield Recorder(run, Measurer(disk), load, opening.row_type, disk.digest)
-
-
-def kept_special(run: OpenRun[Any]) -> list[dict[str, Any]]:
-    """Return what the table of special points says of those among the rows kept."""
-    kept = {row.special for row in run.rows} - {None}
-    table = read_special(run.folder.path / SPECIAL) if kept else {}
-    return [{**told} for number, told in table.items() if number in kept]
 
 
 def blas_threads() -> list[int]:

@@ -7,6 +7,7 @@ inside the film and those of the film NaN on the loop, so that neither is mistak
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,6 +35,7 @@ from eulerplateau.runs.rows import LoadName, Row
 # Field data of a shape file: of its row, and the SHA-256 of the mesh at rest in bytes.
 _OF_ITS_ROW = "step", "kL3_alpha", "sigma_hat", "energy"
 _REST_MESH = "rest_mesh_sha256"
+_END = b"</VTKFile>\n"
 _LOOP_FIELDS = ("kappa", "kappa_n", "kappa_g", "contact_angle", "tangent", "normal")
 
 
@@ -134,6 +136,16 @@ def read_shape(path: str | Path) -> StoredShape:
         energy=float(about["energy"][0]),
         rest_mesh=digest.astype(np.uint8).tobytes().hex(),
     )
+
+
+def ends_as_shape(path: Path) -> bool:
+    """Return whether a file ends as a shape does: a glance, where there are thousands."""
+    try:
+        with path.open("rb") as file:
+            file.seek(-len(_END), os.SEEK_END)
+            return file.read() == _END
+    except OSError:
+        return False
 
 
 def is_whole_shape(path: Path) -> bool:

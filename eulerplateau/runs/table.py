@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -136,6 +136,13 @@ def read_special(path: Path) -> dict[int, dict[str, str]]:
     except (KeyError, ValueError):
         problem = "is no table of special points: no column of whole numbers `number`"
         raise OutputError(path, problem) from None
+
+
+def special_of(rows: Iterable[Any], folder: Path) -> list[dict[str, Any]]:
+    """Return what the table of special points says of those among the rows."""
+    met = {row.special for row in rows} - {None}
+    table = read_special(folder / SPECIAL) if met else {}
+    return [{**told} for number, told in table.items() if number in met]
 
 
 def read_rows(

@@ -39,8 +39,8 @@ def disk_of(size: int) -> Iterator[None]:
 @pytest.mark.parametrize(
     ("kind", "pattern"),
     [
-        pytest.param("cell", "*.vtp", id="special point's shape"),
-        pytest.param("cell", "branches.csv", id="row"),
+        pytest.param("cell", "*.vtp", id="special point's shape", marks=pytest.mark.slow),
+        pytest.param("cell", "branches.csv", id="row", marks=pytest.mark.slow),
         pytest.param("cell", ".checkpoint*", id="checkpoint"),
         pytest.param("sweep", "*.vtp", id="shape"),
         pytest.param("sweep", "run.json", id="run.json"),

@@ -81,7 +81,9 @@ def interrupted(run: Callable[..., Any], spec: Any, folder: Path, after: int) ->
     assert status(folder) == "interrupted"
 
 
-@pytest.mark.parametrize("kind", RUNS)
+@pytest.mark.parametrize(
+    "kind", ["springs", "cell", pytest.param("soap", marks=pytest.mark.slow)]
+)
 def test_interrupted_exploration_ends_as_one_that_went_through(
     kind: str, tmp_path: Path
 ) -> None:

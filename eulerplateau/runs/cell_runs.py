@@ -78,9 +78,11 @@ def run_cell_sweep(
         over = run.finished or any(row.status in ENDS for row in run.rows[-1:])
         left = [] if over else pairs[run.kept :]
         start = read_state(run.last_shape)[0].x[:, :2] if run.kept else None
-        for found in sweep_cell(cell, left, start, max_iterations=spec.max_iterations):
-            on_row(record_cell(run, CellRow, spec.swept.parameter, found))
-            heed()
+        try:
+            for found in sweep_cell(cell, left, start, max_iterations=spec.max_iterations):
+                on_row(record_cell(run, CellRow, spec.swept.parameter, found))
+                heed()
+        finally:
             run.totals |= {
                 "values": len(run.rows),
                 "of": len(pairs),

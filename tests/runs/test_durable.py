@@ -15,9 +15,11 @@ from typing import Any
 import pytest
 
 from eulerplateau.errors import ConflictError, OutputError
-from eulerplateau.runs import run_cell_branches, run_sweep
+from eulerplateau.mesh import write_mesh
+from eulerplateau.runs import RunSpec, run_cell_branches, run_sweep
 from tests.helpers.command import command_line
 from tests.helpers.processes import PATIENCE, started
+from tests.helpers.shapes import disk_points, mesh_of
 from tests.runs.test_resuming import CELL, everything, status, sweep_of
 
 ROOT = Path(__file__).parents[2]
@@ -120,3 +122,21 @@ def test_run_killed_at_twenty_moments_ends_as_one_that_went_through(
             ends += 1
         else:
             kills += 1
+
+
+@pytest.mark.slow
+def test_row_of_a_long_sweep_costs_the_same_at_its_end_as_at_its_beginning(
+    tmp_path: Path,
+) -> None:
+    """5,000 loads, in seconds of this process, which other work does not lengthen."""
+    write_mesh(mesh_of(*disk_points(2)), tmp_path / "mesh.vtp")
+    spec = RunSpec(
+        mesh={"file": str(tmp_path / "mesh.vtp")},
+        sweep={"loads": [{"start": 100.0, "stop": 149.99, "step": 0.01}]},
+    )
+    at: list[float] = []
+    run_sweep(spec, tmp_path / "run", lambda row: at.append(time.process_time()))
+    assert len(at) == 5000
+    # The first rows bring what is loaded and compiled.
+    first, last = (at[600] - at[100]) / 500, (at[-1] - at[-501]) / 500
+    assert last < 1.3 * first

@@ -134,9 +134,10 @@ def branches(
     if not quiet:
         for point in result.special:
             name = run.swept.parameter
+            value, error = float(point[name]), float(point["error"])
             click.echo(
-                f"{point['kind']} {point['number']} at {name} = {point[name]:.8g} +- "
-                f"{point['error']:.1g} on branch {point['branch']}, breaks: "
+                f"{point['kind']} {point['number']} at {name} = {value:.8g} +- "
+                f"{error:.1g} on branch {point['branch']}, breaks: "
                 f"{point['breaks'] or 'nothing'}"
             )
     return _report(result, len(result.rows), drawn, quiet)

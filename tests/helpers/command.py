@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import logging
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +13,6 @@ from unittest import mock
 from eulerplateau.cli import main
 
 Shell = subprocess.CompletedProcess[str]
-_CAUGHT = signal.SIGTERM, signal.SIGHUP
 
 
 def command_line(*words: object) -> list[str]:
@@ -39,7 +37,6 @@ def run_here(*words: object, cwd: Path | None = None) -> Shell:
     root = logging.getLogger()
     handlers, level = root.handlers[:], root.level
     root.handlers[:] = []  # so that the program brings its own, on `err`
-    signals = {number: signal.getsignal(number) for number in _CAUGHT}
     try:
         with (
             mock.patch.object(sys, "argv", arguments),
@@ -51,8 +48,6 @@ def run_here(*words: object, cwd: Path | None = None) -> Shell:
     except SystemExit as end:
         code = int(end.code or 0)
     finally:
-        for number, handler in signals.items():
-            signal.signal(number, handler)
         root.handlers[:] = handlers
         root.setLevel(level)
     return Shell(arguments, code, out.getvalue(), err.getvalue())

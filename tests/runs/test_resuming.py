@@ -15,6 +15,7 @@ from eulerplateau.mesh import write_mesh
 from eulerplateau.runs import (
     CellRunSpec,
     RunSpec,
+    load_cell_run,
     load_run,
     run_branches,
     run_cell_branches,
@@ -167,6 +168,24 @@ def test_exploration_goes_on_elsewhere_with_a_line_that_says_so(
     assert everything(folder) == everything(whole)
     again = run_here("branches", ROOT / "runs" / "elongated.toml", *words)
     assert "finished before" in again.stderr
+
+
+def test_command_goes_on_and_tells_special_points_of_both_calls(tmp_path: Path) -> None:
+    path = tmp_path / "cell.toml"
+    path.write_text(
+        "[cell]\nadhesions = 3\nedges_per_side = 8\nks_hat = 100.0\n"
+        "[sweep]\nvalues = [55.0, 57.0]\n[branches]\nspecial_points = 1\n"
+    )
+    spec, folder = load_cell_run(path, {}), tmp_path / "out"
+    words = "--no-pictures", "--out"
+    whole = run_here("cell", "branches", path, *words, tmp_path / "whole")
+    last = len((tmp_path / "whole" / "branches.csv").read_text().splitlines()) - 3
+    interrupted(run_cell_branches, spec, folder, last)
+    done = run_here("cell", "branches", path, *words, folder, "--resume")
+    assert done.returncode == whole.returncode
+    assert "goes on after" in done.stderr
+    told = whole.stdout.splitlines()[:-1]
+    assert done.stdout.splitlines()[:-1] == told != []
 
 
 def sweep_of(folder: Path, **more: Any) -> RunSpec:

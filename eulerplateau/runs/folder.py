@@ -88,9 +88,9 @@ class RunFolder:
         self.replaces = replaces
         self._name, self._row_type = name, row_type
         self._shapes = [(row.step, row.load, shape_name(row.step)) for row in kept]
-        self._load: LoadName | None = None
+        self._load: LoadName | None = kept[-1].load_name if kept else None
         self._rows = RowWriter(path / f"{name}.csv", row_type, len(kept))
-        self._closed = self._unlisted = False
+        self._closed, self._unlisted = False, bool(kept)
         self._unsynced: list[str] = []
         self._unwritten: tuple[int, Callable[[], Arrays]] | None = None
         self._checkpoints = 0
@@ -232,9 +232,9 @@ class RunFolder:
             if self.replaces is not None:
                 shutil.rmtree(self.path, ignore_errors=True)
                 return
-            self._list_shapes()
             self._sync()
             self._write_checkpoint()
+            self._list_shapes()
         finally:
             self._rows.close()
 

@@ -145,6 +145,7 @@ def _carried_out(run: OpenRun[T], summary: dict[str, Any]) -> Iterator[OpenRun[T
     working_on(words, lambda: run.folder.write_summary(ended("interrupted")))
     try:
         yield run
+        run.folder.finish(ended("finished"))
     except BaseException as error:
         # Nothing that fails now hides what has failed.
         with suppress(OutputError):
@@ -155,8 +156,8 @@ def _carried_out(run: OpenRun[T], summary: dict[str, Any]) -> Iterator[OpenRun[T
         else:
             run.folder.discard()
         raise
-    run.folder.finish(ended("finished"))
-    working_on(words)
+    finally:
+        working_on(words)
 
 
 def _folder(

@@ -59,9 +59,10 @@ def carried_out(
     return code
 
 
-def begin(folder: Path) -> None:
+def begin(folder: Path | None) -> None:
     """Say from now on, should a signal come, that nothing is in a folder yet."""
-    working_on(lambda: f"{folder}: nothing is there yet")
+    where = "" if folder is None else f"{folder}: "
+    working_on(lambda: f"{where}nothing is there yet")
     heed()
 
 

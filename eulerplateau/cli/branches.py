@@ -48,6 +48,7 @@ def branches(
     their loads located by an eigenvalue's crossing), shapes/*.vtp with the critical
     modes, branches.pvd (for ParaView), run.json, branches.png.
     """
+    begin(out)
     from eulerplateau.runs import load_run, run_name
 
     run = load_single(spec, settings, load_run)

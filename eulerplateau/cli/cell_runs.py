@@ -58,6 +58,7 @@ def sweep(
     Writes a run folder: sweep.csv (one row per value), shapes/*.vtp and sweep.pvd (for
     ParaView), run.json, diagram.png. A run ends where the cell's edge touches itself.
     """
+    begin(out)
     from eulerplateau.runs import cell_conflict, load_cell_run, planned
 
     values = [parse_setting(text) for text in settings]
@@ -117,6 +118,7 @@ def branches(
     located by an eigenvalue's crossing), shapes/*.vtp with the critical modes,
     branches.pvd (for ParaView), run.json, branches.png.
     """
+    begin(out)
     from eulerplateau.runs import load_cell_run, run_cell_branches, run_name
 
     run = load_single(spec, settings, load_cell_run)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.batch import OVERWRITE, RESUME, before, carried_out
+from eulerplateau.cli.batch import OVERWRITE, RESUME, before, begin, carried_out
 from eulerplateau.cli.overrides import parse_setting
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -57,6 +57,7 @@ def sweep(
     ParaView), run.json, diagram.png. A run that is there already is kept, and continued if
     it was interrupted.
     """
+    begin(out)
     from eulerplateau.runs import conflict, load_run, planned
 
     values = [parse_setting(text) for text in settings]

@@ -179,7 +179,7 @@ def test_ten_signals_spread_over_the_life_of_a_sweep(spec: Path, seed: int) -> N
             time.sleep(dice.uniform(0.0, 2.0))
             said = ended(process, name, CODES[name])
         (line,) = said.splitlines()
-        assert line.startswith("eulerplateau: interrupted: ")
+        assert line.startswith("eulerplateau: interrupted")
         if (folder / "run.json").exists():
             about = json.loads((folder / "run.json").read_text())
             assert about["status"] == "interrupted"

@@ -69,7 +69,7 @@ def _code() -> int:
             code = commands.main(prog_name="eulerplateau", standalone_mode=False)
         except click.exceptions.Exit as end:
             code = end.exit_code
-        sys.stdout.flush()
+        _flush()
     except click.ClickException as error:
         error.show()
         code = error.exit_code
@@ -85,6 +85,15 @@ def _code() -> int:
         # What could not be written is not tried again at the end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
     return code if isinstance(code, int) else 0
+
+
+def _flush() -> None:
+    """See to it that what was said is written; raises OSError if it cannot be."""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        error.filename = "standard output"
+        raise
 
 
 def _say(text: str) -> None:

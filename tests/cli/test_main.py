@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import subprocess
 from pathlib import Path
 
@@ -254,3 +255,15 @@ def test_mesh_command_ends_with_the_code_of_what_went_wrong(tmp_path: Path) -> N
     good.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n3 1 3 2\n")
     (tmp_path / "file").write_text("in the way")
     assert_fails(run_here("mesh", good, "-o", tmp_path / "file" / "a.vtp"), 5, "file")
+
+
+@pytest.mark.parametrize("stream", [0, 1, 2])
+def test_closed_stream_is_no_error_and_no_file_of_the_run(spec: Path, stream: int) -> None:
+    words = command_line("sweep", "--no-pictures", spec, "--out", "out")
+    line = f"exec {shlex.join(words)} {stream}>&-"
+    result = subprocess.run(
+        ["sh", "-c", line], cwd=spec.parent, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0
+    assert "Traceback" not in result.stderr
+    assert len(read_rows(spec.parent / "out" / "sweep.csv")) == 2

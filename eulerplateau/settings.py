@@ -112,7 +112,9 @@ def _spec_error(
     first = max([first, *inside], key=lambda error: len(error["loc"]))
     key = _key(first, data)
     if first["type"] == "extra_forbidden":
-        problem = _unknown(str(first["loc"][-1]), _allowed_keys(model, first["loc"][:-1]))
+        problem = unknown_key(
+            str(first["loc"][-1]), _allowed_keys(model, first["loc"][:-1])
+        )
     elif first["type"] in ("missing", "union_tag_not_found"):
         problem = "is missing and has no default"
     else:
@@ -156,7 +158,8 @@ def _mismatch(errors: Sequence[ErrorDetails]) -> str:
     return f"found {_quote(first['input'])}; {expected}"
 
 
-def _unknown(name: str, allowed: list[str]) -> str:
+def unknown_key(name: str, allowed: Sequence[str]) -> str:
+    """Return what is wrong with a key that is none of those allowed."""
     near = difflib.get_close_matches(name, allowed, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"is not a known key; {hint}The keys here are {', '.join(allowed)}"

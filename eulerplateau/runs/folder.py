@@ -291,8 +291,13 @@ def _is_run(path: Path) -> bool:
 
 def read_summary(path: Path) -> Mapping[str, Any]:
     """Return what the run.json of a folder says; empty if there is none or a broken one."""
+    return read_json(path / "run.json")
+
+
+def read_json(path: Path) -> Mapping[str, Any]:
+    """Return what a file says; empty if there is none or it is broken."""
     try:
-        summary = json.loads((path / "run.json").read_bytes())
+        content = json.loads(path.read_bytes())
     except (OSError, ValueError):
         return {}
-    return summary if isinstance(summary, dict) else {}
+    return content if isinstance(content, dict) else {}

@@ -58,7 +58,7 @@ class Run:
     @property
     def kind(self) -> Kind:
         """What it follows, a film or a cell."""
-        return _kind_of(self.about)
+        return kind_of(self.about)
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
@@ -165,7 +165,7 @@ def read_runs(folders: Sequence[Path]) -> list[Run]:
 
 def _read(folder: Path) -> Run:
     about = read_summary(folder)
-    kind = _kind_of(about)
+    kind = kind_of(about)
     column = kind.load(about).column
     rows: Sequence[Record]
     special: dict[int, dict[str, str]] = {}
@@ -191,7 +191,7 @@ def _over(run: Run, column: str | None) -> Run:
     return replace(run, rows=tuple(replace(row, quantity=column) for row in run.rows))
 
 
-def _kind_of(about: Mapping[str, Any]) -> Kind:
+def kind_of(about: Mapping[str, Any]) -> Kind:
     """Return the kind of run a run.json belongs to: a film's, unless it says otherwise."""
     if about.get("kind") == "cell":
         # Loaded for cells only.

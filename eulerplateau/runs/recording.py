@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
+from functools import cache, lru_cache
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
@@ -20,7 +21,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import EulerPlateauError, OutputError
 from eulerplateau.film import FILM_LOADS, Load
 from eulerplateau.interruption import working_on
-from eulerplateau.mesh import Disk, Measurer, generate, read_disk
+from eulerplateau.mesh import Disk, Measurer, MeshSpec, generate, read_disk
 from eulerplateau.runs.checkpoint import Arrays
 from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
 from eulerplateau.runs.folder import RunFolder, shape_name
@@ -213,10 +214,19 @@ def blas_threads() -> list[int]:
 
 
 def make_mesh(spec: RunSpec) -> Disk:
-    """Read or generate the mesh of a run."""
-    if isinstance(spec.mesh, StoredMesh):
-        return read_disk(Path(spec.mesh.file))
-    return generate(spec.mesh)
+    """Read or generate the mesh of a run; the last ones are kept, for runs that share them.
+
+    What was read is known by its contents.
+    """
+    stored = spec.mesh.file if isinstance(spec.mesh, StoredMesh) else None
+    return _made(spec.mesh, _digest(stored))
+
+
+@lru_cache(maxsize=2)
+def _made(mesh: StoredMesh | MeshSpec, _contents: str | None) -> Disk:
+    if isinstance(mesh, StoredMesh):
+        return read_disk(Path(mesh.file))
+    return generate(mesh)
 
 
 def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
@@ -254,6 +264,7 @@ def _machine() -> str:
     return " ".join([platform.machine(), *sorted(kinds - {""})])
 
 
+@cache
 def _versions() -> dict[str, str]:
     return {
         "eulerplateau": __version__,

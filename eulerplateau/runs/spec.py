@@ -219,13 +219,18 @@ def read_spec(path: Path, overrides: dict[str, Any], model: type[Model]) -> Mode
     """
     data = read_toml(path)
     for key, value in overrides.items():
-        _override(data, key, value)
+        override(data, key, value)
+    return validate(located(data, path.parent), model, str(path))
+
+
+def located(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return a specification, read as plain data, with its files looked for in a folder."""
     for key in FILE_KEYS:
         name, _, entry = key.partition(".")
         section = data.get(name)
         if isinstance(section, dict) and isinstance(section.get(entry), str):
-            section[entry] = str(path.parent / at_home(key, section[entry]))
-    return validate(data, model, str(path))
+            section[entry] = str(folder / at_home(key, section[entry]))
+    return data
 
 
 def at_home(key: str, file: str) -> Path:
@@ -236,7 +241,8 @@ def at_home(key: str, file: str) -> Path:
         raise SpecError(key, f"found {file!r}; whose home directory is not known") from None
 
 
-def _override(data: dict[str, Any], key: str, value: Any) -> None:
+def override(data: dict[str, Any], key: str, value: Any) -> None:
+    """Replace a dotted key of a specification read as plain data; raises SpecError."""
     *sections, name = key.split(".")
     if not sections:
         raise SpecError(key, "should name its section, as in solver.name or sweep.loads")

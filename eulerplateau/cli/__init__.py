@@ -12,6 +12,9 @@ import click
 from eulerplateau import __version__
 from eulerplateau.cli.branches import branches
 from eulerplateau.cli.cell import cell
+from eulerplateau.cli.collect import collect
+from eulerplateau.cli.doctor import doctor
+from eulerplateau.cli.ensemble import ensemble
 from eulerplateau.cli.examples import examples
 from eulerplateau.cli.gallery import gallery
 from eulerplateau.cli.mesh import mesh
@@ -40,6 +43,9 @@ def commands() -> None:
 
 commands.add_command(branches)
 commands.add_command(cell)
+commands.add_command(collect)
+commands.add_command(doctor)
+commands.add_command(ensemble)
 commands.add_command(examples)
 commands.add_command(gallery)
 commands.add_command(mesh)

@@ -18,7 +18,8 @@ def started_gmsh() -> Iterator[ModuleType]:
         import gmsh
     except OSError as error:
         raise MissingLibraryError(
-            f"Gmsh cannot be loaded ({error}): apt-get install {_PACKAGES}"
+            f"Gmsh cannot be loaded ({error}); on Debian: "
+            f"apt-get update && apt-get install {_PACKAGES}"
         ) from None
     # A user's ~/.gmshrc must not change the mesh; signals only work in the main thread.
     gmsh.initialize(readConfigFiles=False, interruptible=False)

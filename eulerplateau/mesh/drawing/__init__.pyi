@@ -9,7 +9,7 @@ from .film import (
     loop_tube as loop_tube,
     point_camera as point_camera,
 )
-from .picture import Picture as Picture
+from .picture import Picture as Picture, check_drawing as check_drawing
 from .view import (
     ASPECT as ASPECT,
     UP as UP,

@@ -26,6 +26,7 @@ from eulerplateau.runs.table import read_rows, table_content
 
 FAILED = "failed"
 _SEED = "start.seed"
+_FIRST = ("run", "seed", "mesh")
 
 # Digits of a mesh's SHA-256, which tell meshes apart.
 _DIGITS = 12
@@ -39,14 +40,19 @@ class Table:
     ----------
     columns : of these the first are run, seed, mesh, and the keys that differ
     lines : each {column: value}; of a run that failed the last one says why
-    missing, unfinished : names of the runs of which there is nothing, or not all
+    runs : int, how many there is something of
+    not_converged : int, how many rows are no equilibria
+    missing, unfinished, failed : names of the runs of which there is nothing, or not all
     exit_code : the worst of the runs'
     """
 
     columns: tuple[str, ...]
     lines: tuple[Mapping[str, Any], ...]
+    runs: int
+    not_converged: int
     missing: tuple[str, ...]
     unfinished: tuple[str, ...]
+    failed: tuple[str, ...]
     exit_code: int
 
     def write(self, path: Path) -> None:
@@ -106,14 +112,17 @@ def joined(places: Sequence[Place]) -> Table:
             raise OutputError(run.place.folder, problem)
     keys = _differing(found)
     lines = [line for run in found for line in _lines(run, keys)]
-    seeded = [name for name in ("seed",) if any(_SEED in run.keys for run in found)]
+    first = [name for name in _FIRST if any(name in line for line in lines)]
     own = columns(_row_type(found)) if found else ()
     codes = [_exit_code(run) for run in found]
     return Table(
-        ("run", *seeded, "mesh", *keys, *own, "reason"),
+        (*first, *keys, *own, "reason"),
         tuple(lines),
+        len(found),
+        sum(not row.converged for run in found for row in run.rows),
         tuple(place.name for place in places if not place.is_there),
         tuple(run.place.name for run in found if _is_unfinished(run)),
+        tuple(run.place.name for run in found if run.place.failure),
         max(codes, default=0),
     )
 
@@ -139,26 +148,38 @@ def _row_type(found: Sequence[_Found]) -> type[Any]:
 def _differing(found: Sequence[_Found]) -> list[str]:
     """Return the keys in which runs differ, in the order of their specifications."""
     names = dict.fromkeys(key for run in found for key in run.keys if key != _SEED)
+    return [key for key in names if len(set(_identities(found, key))) > 1]
+
+
+def _identities(found: Sequence[_Found], key: str) -> list[str]:
+    """Return, for a key of each run, what is the same where two are alike in it.
+
+    Of a file that is its contents, wherever it lies. A run that failed may not know them:
+    another one of the same file does, or else it is known by its path.
+    """
+    values = [json.dumps(run.keys.get(key)) for run in found]
+    if key not in FILE_KEYS:
+        return values
+    own = [_contents(run, key) if run.keys.get(key) else None for run in found]
+    known = {value: text for value, text in zip(values, own, strict=True) if text}
     return [
-        key for key in names if len({json.dumps(_identity(run, key)) for run in found}) > 1
+        text or known.get(value, value) for value, text in zip(values, own, strict=True)
     ]
 
 
-def _identity(run: _Found, key: str) -> Any:
-    """Return what two runs share that are alike in a key: of a file, its contents."""
-    value = run.keys.get(key)
-    if key not in FILE_KEYS or value is None:
-        return value
-    if key == "start.file":
-        return run.about.get("start_sha256") or value
-    return run.about.get("mesh", {}).get("sha256") or value
+def _contents(run: _Found, key: str) -> str | None:
+    """Return the SHA-256 of what a run has read of the file that a key names."""
+    mesh: str | None = run.about.get("mesh", {}).get("sha256")
+    start: str | None = run.about.get("start_sha256")
+    return start if key == "start.file" else mesh
 
 
 def _lines(run: _Found, keys: Sequence[str]) -> Iterator[dict[str, Any]]:
     mesh = run.about.get("mesh", {}).get("sha256")
     common = {
         "run": run.place.name,
-        "seed": run.keys.get(_SEED),
+        # Cells have none.
+        **({"seed": run.keys[_SEED]} if _SEED in run.keys else {}),
         "mesh": mesh and mesh[:_DIGITS],
         **{key: run.keys.get(key) for key in keys},
     }

@@ -30,13 +30,11 @@ class EnsembleResult:
     ----------
     table : Table, of all cases of this call, computed now or before
     computed : int, of the cases those that this call carried out
-    failed : int, of those the ones that failed
     cases : int, all of this call
     """
 
     table: Table
     computed: int
-    failed: int
     cases: int
 
 
@@ -67,26 +65,31 @@ def run_ensemble(
     ------
     SpecError, OutputError, MissingLibraryError : what is wrong, in a line
     """
-    part, parts = shard
-    if not 0 <= part < parts:
-        raise SpecError("--shard", f"found {part}/{parts}; should be from 0/{parts} on")
     if workers < 1:
         raise SpecError("--workers", f"found {workers}; should be 1 or more")
     out = out.absolute()
+    mine = cases_of(ensemble, shard)
     open_ensemble(out, [case.name for case in ensemble.cases])
-    cases = ensemble.cases[part::parts]
-    tasks = [
-        (case, case_folder(out, case.name))
-        for case in cases
-        if not is_finished(out, case.name)
-    ]
-    failed = 0
+    tasks = [(case, case_folder(out, case.name)) for case in missing(mine, out)]
     for case, outcome in _outcomes(tasks, workers, dask):
         record_failure(out, case, outcome)
-        failed += bool(outcome.problem)
         on_case(case, outcome)
-    table = joined(case_places(out, [case.name for case in cases]))
-    return EnsembleResult(table, len(tasks), failed, len(cases))
+    table = joined(case_places(out, [case.name for case in mine]))
+    return EnsembleResult(table, len(tasks), len(mine))
+
+
+def cases_of(ensemble: Ensemble, shard: tuple[int, int] = (0, 1)) -> tuple[Case, ...]:
+    """Return the cases of a shard: every n-th, from the i-th on; raises SpecError."""
+    part, parts = shard
+    if not 0 <= part < parts:
+        found = f"found {part}/{parts}"
+        raise SpecError("--shard", f"{found}; should be I/N with I from 0 to N - 1")
+    return ensemble.cases[part::parts]
+
+
+def missing(cases: Sequence[Case], out: Path) -> list[Case]:
+    """Return the cases that are not finished in a folder."""
+    return [case for case in cases if not is_finished(out, case.name)]
 
 
 def _outcomes(

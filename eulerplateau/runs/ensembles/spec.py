@@ -73,7 +73,8 @@ class Ensemble:
 
 def load_ensemble(path: str | Path) -> Ensemble:
     """Read the cases of an ensemble; every specification is checked. Raises SpecError."""
-    path = Path(path)
+    # Workers of a cluster may be at home in another folder.
+    path = Path(path).absolute()
     data = read_toml(path)
     names = _EnsembleFile.model_fields.keys()
     own = validate({k: v for k, v in data.items() if k in names}, _EnsembleFile, str(path))

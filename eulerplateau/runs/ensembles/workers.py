@@ -9,6 +9,7 @@ taken.
 
 from __future__ import annotations
 
+import logging
 import signal
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
@@ -140,6 +141,7 @@ def in_workers(
 def _serve(pipe: Connection, function: Callable[[Any], Any]) -> None:
     """Carry out tasks until there are no more; what a worker does."""
     signal.signal(signal.SIGTERM, _end)
+    logging.basicConfig(format="eulerplateau: %(message)s", level=logging.WARNING)
     with suppress(EOFError, OSError):
         while True:
             pipe.send(function(pipe.recv()))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -195,6 +196,8 @@ def _failure(code: str) -> str:
         return f"no answer after {_PATIENCE:g} s"
     if done.returncode == 0:
         return ""
+    if done.returncode < 0:
+        return f"killed by {signal.Signals(-done.returncode).name}"
     last = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
     # Of an error of the program's own its message is enough.
     return last.removeprefix("eulerplateau.errors.MissingLibraryError: ")

@@ -83,9 +83,8 @@ def ensemble(
     part = shard or (0, 1)
     mine = cases_of(found, part)
     with _progress(len(missing(mine, folder)), folder.name, quiet) as show:
-        result = run_ensemble(
-            found, folder, show, workers=workers or _cores(), shard=part, dask=dask
-        )
+        count = _cores() if workers is None else workers
+        result = run_ensemble(found, folder, show, workers=count, shard=part, dask=dask)
     written = []
     if shard is None:
         written = ["ensemble.csv", "ensemble.parquet"] if parquet else ["ensemble.csv"]

@@ -16,15 +16,19 @@ PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 RUN: list[str] = PYPROJECT["project"]["dependencies"]
 DEVELOP: list[str] = PYPROJECT["project"]["optional-dependencies"]["dev"]
 BUILD: list[str] = PYPROJECT["build-system"]["requires"]
-# Imported where there is one: Run.table alone asks for it, and says so where it is missing.
-OPTIONAL = {"pandas"}
+# Imported where there is one: what alone asks for it says so where it is missing.
+OPTIONAL = {"distributed", "pandas", "pyarrow"}
 
 
 def pins() -> dict[str, Requirement]:
-    """Return the requirements of requirements.lock by name."""
+    """Return the requirements of requirements.lock, those of this Python, by name."""
     lines = (ROOT / "requirements.lock").read_text().splitlines()
     found = [Requirement(line) for line in lines if not line.startswith("#")]
-    return {canonicalize_name(pin.name): pin for pin in found}
+    return {
+        canonicalize_name(pin.name): pin
+        for pin in found
+        if pin.marker is None or pin.marker.evaluate()
+    }
 
 
 def with_dependencies(wanted: list[str]) -> dict[str, list[Requirement]]:

@@ -28,10 +28,11 @@ from eulerplateau.interruption import Interrupted, heed, stop_listening, working
 _INTERRUPTED = 130
 
 EXIT_CODES = """\b
-Exit codes: 0 all is well; 2 the specification or the arguments are wrong;
-3 the mesh is wrong; 4 a load did not converge; 5 a file could not be
-read or written; 6 the folder holds another run; 130, 143, 129 interrupted
-by SIGINT, SIGTERM, SIGHUP."""
+Exit codes: 0 all is well; 1 a library is missing, or a case of an ensemble
+died; 2 the specification or the arguments are wrong; 3 the mesh is wrong;
+4 a load did not converge; 5 a file could not be read or written; 6 the
+folder holds another run; 130, 143, 129 interrupted by SIGINT, SIGTERM,
+SIGHUP."""
 
 
 @click.group(epilog=EXIT_CODES)

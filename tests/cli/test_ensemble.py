@@ -7,6 +7,7 @@ import os
 import pty
 import signal
 import subprocess
+import termios
 import time
 from pathlib import Path
 
@@ -162,6 +163,7 @@ def test_extra_that_is_missing_is_named(
 @pytest.mark.slow
 def test_people_see_a_bar_with_the_time_left(spec: Path) -> None:
     ours, theirs = pty.openpty()
+    termios.tcsetwinsize(theirs, (24, 120))
     with subprocess.Popen(
         command_line("ensemble", spec), stderr=theirs, stdout=subprocess.DEVNULL
     ) as process:

@@ -18,6 +18,7 @@ from eulerplateau.cli import commands
 from eulerplateau.cli.cell import cell
 from eulerplateau.mesh import MeshSpec
 from eulerplateau.runs import load_run
+from eulerplateau.runs.ensembles import running
 from eulerplateau.settings import load_toml
 from tests.helpers.command import run_here
 
@@ -72,10 +73,16 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "runs").mkdir()
     for name in ("elongated", "hexagon"):
         (tmp_path / "runs" / f"{name}.toml").write_text(SHORT_RUN.format(name))
-    for block in blocks(TUTORIAL, "toml"):
-        (tmp_path / named(block)).write_text(block)
+    for page in (TUTORIAL, DOCS / "many-runs.md"):
+        for block in blocks(page, "toml"):
+            (tmp_path / named(block)).write_text(block)
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+def in_turn(function, tasks, count):
+    """Carry out tasks in this process, in place of workers."""
+    return ((task, function(task)) for task in tasks)
 
 
 def run(*arguments: str) -> None:
@@ -87,8 +94,13 @@ def run(*arguments: str) -> None:
     "page", [page for page in EXAMPLES if examples(page)], ids=lambda page: page.stem
 )
 def test_python_examples_run_in_order_and_print_what_they_say(
-    page: Path, clone: Path, capsys: pytest.CaptureFixture[str]
+    page: Path,
+    clone: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    if page.stem == "many-runs":
+        monkeypatch.setattr(running, "in_workers", in_turn)
     if page.stem == "gallery":
         run("sweep", "runs/elongated.toml", "--no-pictures", "--quiet")
     names: dict[str, object] = {"__name__": "__main__"}
@@ -133,7 +145,8 @@ def test_specifications_of_the_tutorial_are_valid(clone: Path) -> None:
 
 def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
     lines = command_lines(TUTORIAL, "eulerplateau")
-    assert {line[1] for line in lines} == set(commands.commands) - {"planar", "cell"}
+    elsewhere = {"planar", "cell", "ensemble", "collect", "doctor"}
+    assert {line[1] for line in lines} == set(commands.commands) - elsewhere
     for line in lines:
         run(*line[1:])
     for written in (
@@ -147,6 +160,22 @@ def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
         "kite.png",
     ):
         assert (clone / written).stat().st_size > 0
+
+
+def test_commands_of_the_page_on_many_runs_do_what_it_says(
+    clone: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(running, "in_workers", in_turn)
+    page = DOCS / "many-runs.md"
+    for line in command_lines(page, "eulerplateau"):
+        if line[1] != "doctor" and "--dask" not in line:
+            run(*line[1:])
+    tables = [
+        clone / name for name in ("seeds.csv", "runs/seeds/ensemble.csv", "table.csv")
+    ]
+    for path in tables:
+        assert len(path.read_text().splitlines()) == 1 + 8
+    assert tables[0].read_bytes() == tables[1].read_bytes()
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import shutil
 import signal
 import subprocess
@@ -199,8 +200,18 @@ def _failure(code: str) -> str:
     if done.returncode < 0:
         return f"killed by {signal.Signals(-done.returncode).name}"
     last = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
-    # Of an error of the program's own its message is enough.
-    return last.removeprefix("eulerplateau.errors.MissingLibraryError: ")
+    return _with_cure(last)
+
+
+def _with_cure(error: str) -> str:
+    """Return the last line of what a child said, and what to do about it."""
+    absent = re.search("No module named '([^'.]+)", error)
+    if absent:
+        return f"{error}: pip install {absent[1]}"
+    if "no locator available" in error:  # Numba's words
+        return f"{error}: set NUMBA_CACHE_DIR to a folder that can be written"
+    # An error of the program's own says it itself.
+    return error.removeprefix("eulerplateau.errors.MissingLibraryError: ")
 
 
 def _apt(packages: Sequence[str]) -> str:

@@ -59,6 +59,25 @@ def test_a_crash_is_told_and_survived() -> None:
     assert doctor._failure("") == ""
 
 
+@pytest.mark.parametrize(
+    ("code", "cure"),
+    [
+        ("import gmsh_of_nobody.part", "pip install gmsh_of_nobody"),
+        (
+            "raise RuntimeError('cannot cache function: no locator available')",
+            "NUMBA_CACHE",
+        ),
+        (
+            "from eulerplateau.errors import MissingLibraryError as E; raise E('get it')",
+            "get it",
+        ),
+    ],
+)
+def test_what_to_do_is_said(code: str, cure: str) -> None:
+    assert cure in doctor._failure(code)
+    assert "MissingLibraryError" not in doctor._failure(code)
+
+
 def test_folder_that_cannot_be_written_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -243,7 +243,7 @@ THOUSAND = """
 [mesh]
 file = "{}"
 [grid]
-sweep.loads = [{{ start = 400, stop = 1399, step = 1 }}]
+sweep.loads = [{{ start = 100, stop = 1099, step = 1 }}]
 """
 
 

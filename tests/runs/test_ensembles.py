@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from eulerplateau.errors import EulerPlateauError, OutputError, SpecError
+from eulerplateau.errors import ConflictError, EulerPlateauError, OutputError, SpecError
 from eulerplateau.mesh import mesh_polygon, write_mesh
 from eulerplateau.runs import CellRunSpec, RunSpec, read_run, run_branches, run_sweep
 from eulerplateau.runs.ensembles import (
@@ -323,6 +323,24 @@ def test_mistake_of_the_program_s_own_costs_its_case_alone(home, monkeypatch):
     assert "mesh.file" not in rows[0]  # it is the same, though no case says what is in it
     assert reasons == ["ValueError: out of cheese"] * 2 + ["", ""]
     assert table.exit_code == 1
+
+
+def test_case_that_another_call_carries_out_is_that_call_s(home):
+    """A failure to write where another process writes is no failure of the case."""
+    ensemble = load_ensemble(write(home, FILM))
+    case, *others = ensemble.cases
+    folder = home / "out" / "cases" / case.name
+    running.open_ensemble(home / "out", [case.name for case in ensemble.cases])
+
+    def second(row) -> None:
+        table = run_ensemble(ensemble, home / "out").table
+        assert table.exit_code == ConflictError.exit_code
+        assert table.failed == (case.name,)
+
+    run_sweep(case.spec, folder, second)
+    again = run_ensemble(ensemble, home / "out")
+    assert again.computed == 0
+    assert (again.table.failed, len(again.table.lines)) == ((), 1 + len(others))
 
 
 def test_folder_of_something_else_is_left_alone(home):

@@ -128,7 +128,7 @@ def _failed(began: float, problem: str, exit_code: int) -> Outcome:
 
 
 def _named(place: str) -> Any:
-    """Return what a file of this room's parent has, by "file.name"."""
+    """Return what a file of runs/ has, by "file.name"."""
     file, _, name = place.partition(".")
     return getattr(import_module(f"eulerplateau.runs.{file}"), name)
 

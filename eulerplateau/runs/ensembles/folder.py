@@ -126,7 +126,9 @@ def _is_run(folder: Path) -> bool:
 
 
 def _place(out: Path, name: str) -> Place:
-    return Place(name, case_folder(out, name), read_json(_failure(out, name)))
+    # Of two calls at a time one fails where the other is at work, which counts.
+    failure = {} if is_finished(out, name) else read_json(_failure(out, name))
+    return Place(name, case_folder(out, name), failure)
 
 
 def _failure(out: Path, name: str) -> Path:

@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 from eulerplateau.cli import commands
 from eulerplateau.errors import OutputError
 from eulerplateau.runs import load_cell_run, load_run
+from eulerplateau.runs.ensembles import load_ensemble
 
 ROOT = Path(__file__).parents[2]
 
@@ -34,6 +35,10 @@ def test_files_are_those_of_the_repository_and_its_runs_load(tmp_path: Path) -> 
     for path in (tmp_path / "new" / "folder" / "runs").iterdir():
         if path.stem.startswith("cell"):
             assert load_cell_run(path, {}).cell.made().size > 10
+            continue
+        if path.stem == "ensemble":
+            cases = load_ensemble(path).cases
+            assert all(Path(case.spec.mesh.file).is_file() for case in cases)
             continue
         spec = load_run(path, {})
         assert spec.loads()

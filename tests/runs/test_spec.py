@@ -10,6 +10,7 @@ import pytest
 
 from eulerplateau.errors import EulerPlateauError, OutputError, SpecError
 from eulerplateau.runs.cell_spec import load_cell_run
+from eulerplateau.runs.ensembles import load_ensemble
 from eulerplateau.runs.spec import RunSpec, StoredMesh, load_run
 from eulerplateau.solvers.equilibrium import Status
 
@@ -274,7 +275,10 @@ def test_shipped_runs_are_valid_and_their_meshes_exist() -> None:
     assert len(cells) == 2
     for path in cells:
         assert load_cell_run(path, {}).cell.made().size > 10
-    for path in set(shipped) - set(cells):
+    (ensemble,) = (path for path in shipped if path.stem == "ensemble")
+    for case in load_ensemble(ensemble).cases:
+        assert Path(case.spec.mesh.file).exists()
+    for path in set(shipped) - {*cells, ensemble}:
         spec = load_run(path, {})
         assert len(spec.loads()) > 10
         assert not isinstance(spec.mesh, StoredMesh) or Path(spec.mesh.file).exists()

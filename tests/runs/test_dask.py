@@ -69,19 +69,21 @@ def wait_for(folder: Path, cases: int) -> None:
 
 
 def test_workers_that_are_killed_lose_nothing(cluster: Any, tmp_path: Path) -> None:
-    path = ensemble(tmp_path, 40)
+    path = ensemble(tmp_path, 24)
     words = ["ensemble", path, "--dask", cluster.scheduler_address, "--quiet"]
     with started(command_line(*words)) as process:
-        for begun in (4, 24):
+        for begun in (4, 14):
             wait_for(tmp_path / "films", begun)
             victim = min(cluster.workers.values(), key=lambda nanny: nanny.pid or 0)
             os.kill(victim.pid, signal.SIGKILL)
         out, err = process.communicate(timeout=PATIENCE)
-    assert (process.returncode, out, err) == (0, "", "")
+    # On a busy machine Dask itself may say that its event loop had to wait.
+    ours = [line for line in err.splitlines() if line.startswith("eulerplateau")]
+    assert (process.returncode, out, ours) == (0, "", []), err
     run_ensemble(load_ensemble(path), tmp_path / "here", workers=2).table.write(
         tmp_path / "here/ensemble.csv"
     )
-    assert len(rows(tmp_path / "films")) == 200
+    assert len(rows(tmp_path / "films")) == 120
     assert rows(tmp_path / "films") == rows(tmp_path / "here")
 
 

@@ -77,9 +77,7 @@ def test_workers_that_are_killed_lose_nothing(cluster: Any, tmp_path: Path) -> N
             victim = min(cluster.workers.values(), key=lambda nanny: nanny.pid or 0)
             os.kill(victim.pid, signal.SIGKILL)
         out, err = process.communicate(timeout=PATIENCE)
-    # On a busy machine Dask itself may say that its event loop had to wait.
-    ours = [line for line in err.splitlines() if line.startswith("eulerplateau")]
-    assert (process.returncode, out, ours) == (0, "", []), err
+    assert (process.returncode, out, err) == (0, "", "")
     run_ensemble(load_ensemble(path), tmp_path / "here", workers=2).table.write(
         tmp_path / "here/ensemble.csv"
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from threading import Lock
@@ -31,6 +32,9 @@ def on_dask(
     except ImportError:
         problem = "--dask needs Dask: pip install 'eulerplateau[dask]'"
         raise MissingLibraryError(problem) from None
+    for name in ("distributed", "distributed.client"):
+        # Of workers that die it says how it mends that.
+        logging.getLogger(name).setLevel(logging.ERROR)
     try:
         client = Client(address)
     except (OSError, ValueError) as error:

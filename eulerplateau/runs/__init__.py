@@ -2,6 +2,7 @@
 
     running.py      `run`, as from the command line; plan.py: which runs a call asks for
     spec.py         what a file of runs/ may say, to which a key is added
+    inputs.py       its mesh, and what is in the files that it names
     start.py        where a run starts: at its mesh or at a stored shape
     sweep.py, exploration.py   a sweep, the branches; recording.py: what both write
     rows.py         the columns of sweep.csv and branches.csv; table.py: the files;

@@ -20,10 +20,10 @@ from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk
+from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.recording import (
     Opening,
     Recorder,
-    make_mesh,
     recording,
 )
 from eulerplateau.runs.rows import BranchRow

@@ -291,13 +291,8 @@ def _is_run(path: Path) -> bool:
 
 def read_summary(path: Path) -> Mapping[str, Any]:
     """Return what the run.json of a folder says; empty if there is none or a broken one."""
-    return read_json(path / "run.json")
-
-
-def read_json(path: Path) -> Mapping[str, Any]:
-    """Return what a file says; empty if there is none or it is broken."""
     try:
-        content = json.loads(path.read_bytes())
+        summary = json.loads((path / "run.json").read_bytes())
     except (OSError, ValueError):
         return {}
-    return content if isinstance(content, dict) else {}
+    return summary if isinstance(summary, dict) else {}

@@ -7,8 +7,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
-from functools import cache, lru_cache
-from hashlib import sha256
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -21,12 +20,13 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import EulerPlateauError, OutputError
 from eulerplateau.film import FILM_LOADS, Load
 from eulerplateau.interruption import working_on
-from eulerplateau.mesh import Disk, Measurer, MeshSpec, generate, read_disk
+from eulerplateau.mesh import Disk, Measurer
 from eulerplateau.runs.checkpoint import Arrays
 from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
 from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.inputs import contents
 from eulerplateau.runs.rows import Record, Row
-from eulerplateau.runs.spec import RunSpec, StoredMesh
+from eulerplateau.runs.spec import RunSpec
 from eulerplateau.solvers import Equilibrium
 
 # Matrices here are as large as the loop: a second thread waits more than it works.
@@ -213,22 +213,6 @@ def blas_threads() -> list[int]:
     return [pool["num_threads"] for pool in pools if pool["user_api"] == "blas"]
 
 
-def make_mesh(spec: RunSpec) -> Disk:
-    """Read or generate the mesh of a run; the last ones are kept, for runs that share them.
-
-    What was read is known by its contents.
-    """
-    stored = spec.mesh.file if isinstance(spec.mesh, StoredMesh) else None
-    return _made(spec.mesh, _digest(stored))
-
-
-@lru_cache(maxsize=2)
-def _made(mesh: StoredMesh | MeshSpec, _contents: str | None) -> Disk:
-    if isinstance(mesh, StoredMesh):
-        return read_disk(Path(mesh.file))
-    return generate(mesh)
-
-
 def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
     """Return what run.json says before anything is computed.
 
@@ -246,16 +230,8 @@ def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
             "length": mesh.length,
         },
         "seed": spec.start.seed,
-        "start_sha256": _digest(spec.start.file),
+        "start_sha256": contents(spec.start.file),
     }
-
-
-def _digest(path: str | None) -> str | None:
-    """Return the SHA-256 of a file's contents; None without one, or if it is not there."""
-    try:
-        return None if path is None else sha256(Path(path).read_bytes()).hexdigest()
-    except OSError:
-        return None
 
 
 def _machine() -> str:

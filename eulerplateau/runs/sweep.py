@@ -16,11 +16,11 @@ from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.runs.continuing import look
 from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.recording import (
     Opening,
     OpenRun,
     describe,
-    make_mesh,
     not_converged,
     recording,
 )

@@ -7,6 +7,8 @@ import signal
 import time
 from pathlib import Path
 
+from eulerplateau.interruption import Interrupted, heed
+
 Task = tuple[str, Path]
 
 
@@ -22,8 +24,10 @@ def noted(task: Task) -> tuple[str, int]:
         os._exit(7)
     if word.startswith("wait"):
         try:
-            time.sleep(1e6)
-        except BaseException as end:
-            (folder / "ended").write_text(type(end).__name__)
+            while True:
+                heed()
+                time.sleep(0.01)
+        except Interrupted as end:
+            (folder / "ended").write_text(str(end.code))
             raise
     return word, os.getpid()

@@ -7,7 +7,6 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import Any
 
 from eulerplateau.errors import EulerPlateauError, SpecError
 from eulerplateau.runs.continuing import RESULTS
+from eulerplateau.runs.inputs import contents
 from eulerplateau.runs.spec import FILE_KEYS
 from eulerplateau.settings import Settings
 
@@ -86,13 +86,13 @@ def case_name(kind: str, spec: Settings) -> str:
     makes no difference.
     """
     said = spec.model_dump(mode="json", exclude_defaults=True)
-    contents = {}
+    read = {}
     for key in FILE_KEYS:
         section, _, entry = key.partition(".")
         path = said[section].pop(entry, None) if section in said else None
         if path is not None:
-            contents[key] = _digest(Path(path))
-    identity = {"kind": kind, "spec": said, "contents": contents, "results": RESULTS}
+            read[key] = contents(path)
+    identity = {"kind": kind, "spec": said, "contents": read, "results": RESULTS}
     text = json.dumps(identity, sort_keys=True, allow_nan=False)
     return sha256(text.encode()).hexdigest()[:_DIGITS]
 
@@ -131,18 +131,3 @@ def _named(place: str) -> Any:
     """Return what a file of runs/ has, by "file.name"."""
     file, _, name = place.partition(".")
     return getattr(import_module(f"eulerplateau.runs.{file}"), name)
-
-
-def _digest(path: Path) -> str | None:
-    """Return the SHA-256 of a file's contents; None if it cannot be read."""
-    try:
-        about = path.stat()
-        return _digest_of(path, about.st_mtime_ns, about.st_size, about.st_ino)
-    except OSError:
-        return None
-
-
-@lru_cache(maxsize=64)
-def _digest_of(path: Path, *_version: int) -> str:
-    """Return the SHA-256 of a file, read once while its time, size and number stay."""
-    return sha256(path.read_bytes()).hexdigest()

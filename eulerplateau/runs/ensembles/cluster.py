@@ -9,6 +9,7 @@ from threading import Lock
 from typing import TypeVar
 
 from eulerplateau.errors import MissingLibraryError, SpecError
+from eulerplateau.interruption import heed
 from eulerplateau.runs.ensembles.workers import Died
 
 T = TypeVar("T")
@@ -44,6 +45,7 @@ def on_dask(
         ours = dict(zip(futures, tasks, strict=True))
         try:
             for future in as_completed(futures):
+                heed()
                 if future.status == "finished":
                     yield ours[future], future.result()
                 else:

@@ -20,8 +20,7 @@ from typing import Any
 
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import write_whole
-from eulerplateau.runs.ensembles.cases import Case, Outcome
-from eulerplateau.runs.folder import read_json, read_summary
+from eulerplateau.runs.folder import read_summary
 
 _LIST = "ensemble.json"
 _MARK = {"program": "eulerplateau"}
@@ -73,20 +72,14 @@ def is_finished(out: Path, name: str) -> bool:
     return read_summary(case_folder(out, name)).get("status") == "finished"
 
 
-def record_failure(out: Path, case: Case, outcome: Outcome) -> None:
-    """Keep why a case failed, or forget that an earlier call failed."""
-    path = _failure(out, case.name)
-    if not outcome.problem:
-        with suppress(FileNotFoundError):
-            path.unlink()
+def record_failure(out: Path, name: str, about: Mapping[str, Any] | None) -> None:
+    """Keep why a case failed; or, without that, forget that an earlier call failed."""
+    path = _failure(out, name)
+    if about is not None:
+        _write(path, {**_MARK, **about})
         return
-    about = {
-        "kind": "cell" if case.kind.startswith("cell") else "film",
-        "spec": case.spec.model_dump(mode="json"),
-        "problem": outcome.problem,
-        "exit_code": outcome.exit_code,
-    }
-    _write(path, {**_MARK, **about})
+    with suppress(FileNotFoundError):
+        path.unlink()
 
 
 def case_places(out: Path, names: Iterable[str]) -> list[Place]:
@@ -113,7 +106,7 @@ def read_runs_below(folders: Sequence[Path]) -> list[Place]:
 
 
 def _in(folder: Path) -> list[Place]:
-    listed = read_json(folder / _LIST).get("cases")
+    listed = _read(folder / _LIST).get("cases")
     if isinstance(listed, list):
         return case_places(folder, listed)
     runs = [folder] if _is_run(folder) else sorted(filter(_is_run, folder.glob("*")))
@@ -127,7 +120,7 @@ def _is_run(folder: Path) -> bool:
 
 def _place(out: Path, name: str) -> Place:
     # Of two calls at a time one fails where the other is at work, which counts.
-    failure = {} if is_finished(out, name) else read_json(_failure(out, name))
+    failure = {} if is_finished(out, name) else _read(_failure(out, name))
     return Place(name, case_folder(out, name), failure)
 
 
@@ -137,3 +130,12 @@ def _failure(out: Path, name: str) -> Path:
 
 def _write(path: Path, content: Mapping[str, Any]) -> None:
     write_whole(path, f"{json.dumps(content, indent=2, allow_nan=False)}\n".encode())
+
+
+def _read(path: Path) -> Mapping[str, Any]:
+    """Return what a file of ours says; empty without one, or if it is broken."""
+    try:
+        found = json.loads(path.read_bytes())
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}

@@ -16,12 +16,11 @@ from eulerplateau.errors import (
 )
 from eulerplateau.mesh import write_whole
 from eulerplateau.runs.ensembles.folder import Place
-from eulerplateau.runs.ensembles.spec import leaves
 from eulerplateau.runs.folder import read_summary
 from eulerplateau.runs.kinds import Kind
 from eulerplateau.runs.record import kind_of
 from eulerplateau.runs.rows import Record, columns
-from eulerplateau.runs.spec import FILE_KEYS
+from eulerplateau.runs.spec import FILE_KEYS, leaves
 from eulerplateau.runs.table import read_rows, table_content
 
 FAILED = "failed"

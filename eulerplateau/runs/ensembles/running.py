@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from eulerplateau.errors import SpecError
+from eulerplateau.interruption import working_on
 from eulerplateau.runs.ensembles.cases import Case, Outcome, carry_out
 from eulerplateau.runs.ensembles.folder import (
     case_folder,
@@ -71,11 +73,26 @@ def run_ensemble(
     mine = cases_of(ensemble, shard)
     open_ensemble(out, [case.name for case in ensemble.cases])
     tasks = [(case, case_folder(out, case.name)) for case in missing(mine, out)]
+    there = len(mine) - len(tasks)
+    working_on(lambda: f"{out}: {there} of {len(mine)} cases are there")
     for case, outcome in _outcomes(tasks, workers, dask):
-        record_failure(out, case, outcome)
+        there += not outcome.problem
+        record_failure(out, case.name, _failure(case, outcome))
         on_case(case, outcome)
     table = joined(case_places(out, [case.name for case in mine]))
     return EnsembleResult(table, len(tasks), len(mine))
+
+
+def _failure(case: Case, outcome: Outcome) -> dict[str, Any] | None:
+    """Return what is kept of a case that failed; None if it did not."""
+    if not outcome.problem:
+        return None
+    return {
+        "kind": "cell" if case.kind.startswith("cell") else "film",
+        "spec": case.spec.model_dump(mode="json"),
+        "problem": outcome.problem,
+        "exit_code": outcome.exit_code,
+    }
 
 
 def cases_of(ensemble: Ensemble, shard: tuple[int, int] = (0, 1)) -> tuple[Case, ...]:

@@ -30,7 +30,7 @@ from pydantic import Field
 from eulerplateau.errors import SpecError
 from eulerplateau.runs.ensembles.cases import Case, case_name, spec_type
 from eulerplateau.runs.loads import Range, Refinement
-from eulerplateau.runs.spec import FILE_KEYS, at_home, located, override
+from eulerplateau.runs.spec import FILE_KEYS, at_home, leaves, located, override
 from eulerplateau.settings import Settings, read_toml, unknown_key, validate
 
 # Of one file; all are checked before the first is carried out.
@@ -138,15 +138,6 @@ def _combinations(
             raise SpecError(f"case[{number}].{twice[0]}", "is in the grid too: drop one")
         for combination in itertools.product(*axes.values()):
             yield own | dict(zip(axes, combination, strict=True))
-
-
-def leaves(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the dotted keys of nested tables; how they are written makes no difference."""
-    for key, value in table.items():
-        if isinstance(value, dict) and value:
-            yield from leaves(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
 
 
 def _values(key: str, given: Any) -> list[Any]:

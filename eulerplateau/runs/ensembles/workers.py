@@ -17,13 +17,19 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import get_context, resource_tracker
 from multiprocessing.connection import Connection, wait
-from typing import Any, Generic, NoReturn, TypeVar
+from typing import Any, Generic, TypeVar
+
+from eulerplateau.interruption import Interrupted, heed, listen
 
 T = TypeVar("T")
 R = TypeVar("R")
 
-# Seconds in which a process that is told to end writes down how far it has come.
-_PATIENCE = 10.0
+# Seconds in which a process that is told to end writes down how far it has come; fewer than
+# `interruption` waits for this one.
+_PATIENCE = 4.0
+
+# Seconds between two looks whether this process is to end.
+_LOOK = 0.2
 
 # Those of a terminal reach every process of a call: it tells its workers itself.
 _TERMINAL = [
@@ -103,7 +109,7 @@ def in_workers(
     """Yield each task with its result, as they come, of `count` processes.
 
     `function` and the tasks are pickled, and it raises nothing. Where iteration ends early
-    the processes are told to end by SIGTERM, which raises SystemExit in them.
+    the processes are told to end by SIGTERM, which they heed.
     """
     waiting = deque(_Task(task) for task in tasks)
     team: list[_Worker[T, R]] = []
@@ -115,7 +121,9 @@ def in_workers(
                 team.append(worker)
                 worker.give(waiting.popleft())
             pipes = {worker.pipe: worker for worker in team}
-            for pipe in wait(pipes):
+            ready = wait(pipes, _LOOK)
+            heed()
+            for pipe in ready:
                 worker = pipes[pipe]  # type: ignore[index]
                 task, result = worker.task, worker.result()
                 assert task is not None
@@ -140,15 +148,15 @@ def in_workers(
 
 def _serve(pipe: Connection, function: Callable[[Any], Any]) -> None:
     """Carry out tasks until there are no more; what a worker does."""
-    signal.signal(signal.SIGTERM, _end)
+    listen()
     logging.basicConfig(format="eulerplateau: %(message)s", level=logging.WARNING)
-    with suppress(EOFError, OSError):
-        while True:
-            pipe.send(function(pipe.recv()))
-
-
-def _end(number: int, _frame: Any) -> NoReturn:
-    raise SystemExit(128 + number)
+    try:
+        with suppress(EOFError, OSError):
+            while True:
+                pipe.send(function(pipe.recv()))
+                heed()
+    except Interrupted as end:
+        raise SystemExit(end.code) from None
 
 
 @contextmanager

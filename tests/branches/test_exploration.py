@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
-import scipy.linalg
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.branches.special import SpecialPoint
 from eulerplateau.loop.motions import rigid_motions
+from eulerplateau.mesh.disk import Disk
+from eulerplateau.mesh.shape import Shape
 from tests.helpers import diagram
 from tests.helpers.diagram import CONTROL, Diagram
 
@@ -182,37 +183,45 @@ def test_index_agrees_with_a_dense_count_on_the_whole_mesh(found: Diagram) -> No
         if visit.special is None:
             checked[visit.branch // 2, index(visit.point)] = visit.point
     assert {n for _, n in checked} == {0, 1, 2}
+    problem, mesh = found.problem, found.mesh
+    film = columns_of(lambda shape: problem.film.energy_gradient(shape, 1.0)[1], mesh)
+    rod = columns_of(lambda shape: problem.bending_energy(shape)[1], mesh)
     for (_, expected), point in checked.items():
-        values = whole_spectrum(found, point)
+        values = whole_spectrum(found, point, film, rod)
         assert int((values < 0).sum()) == expected
         # The count is not decided by rounding.
         assert np.abs(values).min() > 1e-9 * values.max()
 
 
-def whole_spectrum(found: Diagram, point: BranchPoint) -> FloatArray:
+def whole_spectrum(
+    found: Diagram, point: BranchPoint, film: FloatArray, rod: FloatArray
+) -> FloatArray:
     """Spectrum of the Lagrangian's second variation on the constraint's tangent space."""
-    problem, shape = found.problem, found.shape(point)
-    x = shape.x
-    n, along_z = len(x), np.zeros_like(x)
-    hessian = np.empty((n, n))
-    for v in range(n):
-        # Quadratic energies: the gradient at a unit vector is a column of the Hessian.
-        along_z[v, 2] = 1.0
-        column = shape.moved(along_z)
-        force = problem.film.energy_gradient(column, point.value)[1]
-        force = force + problem.bending_energy(column)[1]
-        force = force + problem.tension_force(column, point.model.tensions)
-        hessian[:, v] = force[:, 2]
-        along_z[v, 2] = 0.0
-    tangent = scipy.linalg.null_space(
-        np.vstack([length_rows(found, x), rigid_motions(x).T])
-    )
-    assert tangent.shape[1] == 3 * n - found.mesh.n_b - 6
+    problem, x = found.problem, found.shape(point).x
+    tensions = point.model.tensions
+    tension = columns_of(lambda shape: problem.tension_force(shape, tensions), found.mesh)
+    hessian = point.value * film + rod + tension
+    n = len(x)
+    rows = np.vstack([length_rows(found, x), rigid_motions(x).T])
+    axes, triangle = np.linalg.qr(rows.T, mode="complete")
+    assert np.linalg.matrix_rank(triangle) == len(rows) == found.mesh.n_b + 6
+    tangent = axes[:, len(rows) :]
     # tangent^T (hessian (x) I_3) tangent
-    curved = np.einsum("uv,vdk->udk", hessian, tangent.reshape(n, 3, -1), optimize=True)
-    projected = tangent.T @ curved.reshape(3 * n, -1)
+    curved = (hessian @ tangent.reshape(n, -1)).reshape(3 * n, -1)
+    projected = tangent.T @ curved
     values: FloatArray = np.linalg.eigvalsh(0.5 * (projected + projected.T))
     return values
+
+
+def columns_of(force: Callable[[Shape], FloatArray], mesh: Disk) -> FloatArray:
+    """Hessian (n_v, n_v) of a quadratic energy, the same for all three coordinates.
+
+    The gradient at a unit vector is a column of it.
+    """
+    hessian = np.empty((mesh.n_v, mesh.n_v))
+    for v, row in enumerate(np.eye(mesh.n_v)):
+        hessian[:, v] = force(mesh.shape.moved(np.outer(row, [0.0, 0.0, 1.0])))[:, 2]
+    return hessian
 
 
 def length_rows(found: Diagram, x: FloatArray) -> FloatArray:

@@ -89,10 +89,12 @@ def test_files_of_pyvista_are_the_same_disk(tmp_path, extension, binary):
     assert_same(read_mesh(path), digits=1e-6)
 
 
-def circle(path: Path) -> Disk:
+@pytest.fixture(scope="module")
+def known(tmp_path_factory: pytest.TempPathFactory) -> Disk:
     """What Gmsh makes, in the form that is read anyway."""
-    disk_files.write_msh(path / "plain.msh", 4.1, False)
-    return read_mesh(path / "plain.msh")
+    path = tmp_path_factory.mktemp("circle") / "plain.msh"
+    disk_files.write_msh(path, 4.1, False)
+    return read_mesh(path)
 
 
 # Gmsh writes version 4.0 as text only.
@@ -101,8 +103,9 @@ def circle(path: Path) -> Disk:
     [(2.2, False), (2.2, True), (4.0, False), (4.1, False), (4.1, True)],
 )
 @pytest.mark.parametrize("variant", ["", "parametric", "partitioned", "groups"])
-def test_gmshs_files_of_any_version_are_the_same_disk(tmp_path, variant, version, binary):
-    known = circle(tmp_path)
+def test_gmshs_files_of_any_version_are_the_same_disk(
+    tmp_path, known, variant, version, binary
+):
     disk_files.write_msh(tmp_path / "film.msh", version, binary, variant=variant)
     assert_same(read_mesh(tmp_path / "film.msh"), known, 1e-15)
     radius = np.linalg.norm(known.x[known.loop], axis=1) * known.length
@@ -112,9 +115,8 @@ def test_gmshs_files_of_any_version_are_the_same_disk(tmp_path, variant, version
 @pytest.mark.parametrize("order", [2, 3])
 @pytest.mark.parametrize("version", [2.2, 4.1])
 def test_triangles_of_higher_order_are_taken_by_their_corners(
-    tmp_path, caplog, version, order
+    tmp_path, caplog, known, version, order
 ):
-    known = circle(tmp_path)
     disk_files.write_msh(tmp_path / "film.msh", version, True, order)
     assert_same(read_mesh(tmp_path / "film.msh"), known)
     (said,) = caplog.messages

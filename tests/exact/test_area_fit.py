@@ -7,7 +7,6 @@ from math import inf, pi
 import numpy as np
 import pytest
 from scipy.optimize import brentq, least_squares
-from scipy.stats import chi2, t
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
@@ -123,6 +122,8 @@ def test_intervals_end_where_an_independent_profile_says(kind: str) -> None:
     error = 0.08 * areas() if kind == "known" else None
     level = 0.9
     fit = fit_areas(STIFFNESS, area, error, level=level, relative=kind == "relative")
+    from scipy.stats import chi2, t  # which takes a second to import
+
     best = np.log(values(fit))
 
     def residuals(theta: FloatArray) -> FloatArray:

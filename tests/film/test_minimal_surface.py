@@ -83,7 +83,7 @@ def test_it_is_a_minimum_of_all_coordinates_inside() -> None:
 def test_area_converges_at_second_order_to_ennepers() -> None:
     """Area pi ((1 + R^2)^3 - 1) / 3 for the radius R in the conformal parameters."""
     exact = np.pi * ((1 + RADIUS**2) ** 3 - 1) / 3
-    rings, errors = [6, 9, 13, 19], []
+    rings, errors = [5, 7, 10, 13], []
     for number in rings:
         film, x, mesh = enneper(number)
         better, there = found_near(film, x)
@@ -157,7 +157,7 @@ def test_free_second_variation_is_the_schur_complement(local: LocalFilm) -> None
 
 
 def test_branch_that_leaves_the_plane_is_of_discrete_minimal_surfaces() -> None:
-    mesh = soap_films.irregular_disk(9)
+    mesh = soap_films.irregular_disk(7)
     start = soap_films.two_lobed(mesh, 1780.0)
     limits = Limits(1, 2, stop=lambda point: not 1650 < point.value < 1850)
     curved = 0

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.pictures.render import STILLS, SWEEP, TURN, RunPictures, draw_shapes
+from eulerplateau.pictures.render import STILLS, SWEEP, TURN, RunPictures
 from tests.helpers.shapes import disk_points, eight, fitted_order, mesh_of, rotation
 from tests.runs.test_folder import start
 from tests.runs.test_output import ROW
@@ -58,12 +58,12 @@ def run(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
     return path
 
 
-# The child's module once for each kind of picture: VTK takes its time to start. Half as
-# many frames as there are go around as well.
+# The child's module once for each kind of picture: VTK takes its time to start. Smaller
+# pictures, and half as many frames as go around, show as much.
 DRAW = """
 import json, runpy, sys
 from eulerplateau.pictures.render import pictures
-pictures._TURN_FRAMES = 24
+pictures._WIDTH, pictures._FRAME_WIDTH, pictures._TURN_FRAMES = 600, 400, 24
 for sys.argv[1:] in json.loads(sys.argv[1]):
     runpy.run_module("eulerplateau.pictures.render", run_name="__main__")
 """
@@ -71,19 +71,24 @@ EVERY = tuple(range(N_SHAPES))
 BOTH = (FLAT, FOLDED)
 
 
+def draw(run: Path, *wanted: tuple[str, str, tuple[int, ...]]) -> None:
+    """Draw each kind of picture, in its colours, of these steps."""
+    calls = [[str(run), kind, colour, *map(str, steps)] for kind, colour, steps in wanted]
+    subprocess.run([sys.executable, "-c", DRAW, json.dumps(calls)], check=True)
+
+
 @pytest.fixture(scope="module")
 def drawn(run: Path) -> Path:
     """The pictures of every kind, drawn by one child."""
-    wanted = [
+    draw(
+        run,
         (STILLS, "sides", EVERY),
         (STILLS, "soap", BOTH),
         (STILLS, "angle_defect", BOTH),
         (STILLS, "kappa_n", BOTH),
         (TURN, "sides", (FOLDED,)),
         (SWEEP, "sides", EVERY),
-    ]
-    calls = [[str(run), kind, colour, *map(str, steps)] for kind, colour, steps in wanted]
-    subprocess.run([sys.executable, "-c", DRAW, json.dumps(calls)], check=True)
+    )
     return run / "pictures"
 
 
@@ -144,7 +149,7 @@ def test_all_pictures_have_one_scale(drawn: Path) -> None:
 
 def test_the_view_is_the_runs_whatever_is_shown(drawn: Path, run: Path) -> None:
     together = read(drawn / "shape_0003.png")
-    assert draw_shapes(run, [3])
+    draw(run, (STILLS, "sides", (3,)))
     assert (read(drawn / "shape_0003.png") == together).all()
 
 

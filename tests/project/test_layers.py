@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from importlib.util import resolve_name
 from pathlib import Path
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 
 import eulerplateau
+from tests.helpers.sources import statements, tree
 
 # The rooms of docs/architecture.md from the ground up.
 ROOMS = (
@@ -72,13 +74,14 @@ def imports(node: ast.AST, package: str) -> Iterator[str]:
         yield from (f"{base}.{alias.name}" for alias in node.names)
 
 
+@cache
 def targets(module: str) -> set[str]:
     """Return the modules of the package that `module` imports, in its functions too."""
     path = FILES[module]
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     names = (
         name
-        for node in ast.walk(ast.parse(path.read_text()))
+        for node in statements(path)
         for name in imports(node, package)
         if name.split(".")[0] == "eulerplateau"
     )
@@ -123,7 +126,7 @@ def behind_the_faces() -> dict[str, set[str]]:
         (".".join(path.parent.relative_to(ROOT.parent).parts), alias.name): node.module
         or ""
         for path in ROOT.rglob("__init__.pyi")
-        for node in ast.parse(path.read_text()).body
+        for node in tree(path).body
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
     }
@@ -139,8 +142,8 @@ def behind_the_faces() -> dict[str, set[str]]:
 
     graph = {}
     for module, path in FILES.items():
-        nodes = [node for node in ast.walk(ast.parse(path.read_text())) if own(node)]
-        homes = {home(node.module, alias.name) for node in nodes for alias in node.names}
+        ours = [node for node in statements(path) if own(node)]
+        homes = {home(node.module, alias.name) for node in ours for alias in node.names}
         graph[module] = homes - {module}
     return graph
 
@@ -166,8 +169,11 @@ def test_imports_never_run_in_a_circle() -> None:
 
 @pytest.mark.parametrize("module", FILES)
 def test_heavy_libraries_are_imported_where_they_are_used(module: str) -> None:
-    tree = ast.parse(FILES[module].read_text())
-    names = {name for node in loaded_at_import(tree) for name in imports(node, module)}
+    names = {
+        name
+        for node in loaded_at_import(tree(FILES[module]))
+        for name in imports(node, module)
+    }
     assert {name.split(".")[0] for name in names} & HEAVY == set()
 
 

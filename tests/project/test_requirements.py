@@ -11,6 +11,8 @@ from pathlib import Path
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from tests.helpers.sources import statements
+
 ROOT = Path(__file__).parents[2]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
 RUN: list[str] = PYPROJECT["project"]["dependencies"]
@@ -57,17 +59,13 @@ def test_lock_pins_what_is_needed_and_nothing_else() -> None:
 
 
 def test_package_imports_only_what_it_declares() -> None:
-    statements = [
-        node
-        for path in (ROOT / "eulerplateau").rglob("*.py")
-        for node in ast.walk(ast.parse(path.read_text()))
-    ]
     named = []
-    for node in statements:
-        if isinstance(node, ast.Import):
-            named += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            named += [node.module or ""]
+    for path in (ROOT / "eulerplateau").rglob("*.py"):
+        for node in statements(path):
+            if isinstance(node, ast.Import):
+                named += [alias.name for alias in node.names]
+            else:
+                named += [node.module or ""]
     foreign = {name.split(".")[0] for name in named} - sys.stdlib_module_names
     distributions = metadata.packages_distributions()
     assert foreign >= OPTIONAL

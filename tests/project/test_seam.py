@@ -10,20 +10,20 @@ from pathlib import Path
 import pytest
 
 import eulerplateau
+from tests.helpers.sources import nodes, tree
 
 ROOT = Path(eulerplateau.__file__).parent
 FILES = {path.relative_to(ROOT).as_posix(): path for path in sorted(ROOT.rglob("*.py"))}
-TREES = {name: ast.parse(path.read_text()) for name, path in FILES.items()}
 
 FILMS = {"QuadraticFilm", "AreaFilm", "PlaneFilm"}
 # The solver chooses its search by the film, conjugate gradients their unknowns.
 TOLD_APART = {"solvers/newton.py", "solvers/trial_space.py"}
 
 
-def names(tree: ast.AST) -> set[str]:
+def names(code: ast.AST) -> set[str]:
     """Every name that code uses, defines, imports or reaches through a module."""
     found = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(code):
         match node:
             case ast.Name(id=name) | ast.Attribute(attr=name) | ast.ClassDef(name=name):
                 found.add(name)
@@ -37,16 +37,16 @@ def kinds() -> set[str]:
     """The classes of films and of the loop's energies, and what they are made of."""
     return {
         node.name
-        for name, tree in TREES.items()
+        for name, path in FILES.items()
         if name.startswith(("film/", "loop/"))
-        for node in ast.walk(tree)
+        for node in nodes(path)
         if isinstance(node, ast.ClassDef)
     }
 
 
-def asked_for(tree: ast.AST) -> Iterator[ast.AST]:
+def asked_for(code: ast.AST) -> Iterator[ast.AST]:
     """Yield what code asks of the class of a value, other than by `match`."""
-    for node in ast.walk(tree):
+    for node in ast.walk(code):
         match node:
             case ast.Call(func=ast.Name(id="isinstance" | "issubclass"), args=[_, asked]):
                 yield asked
@@ -54,25 +54,25 @@ def asked_for(tree: ast.AST) -> Iterator[ast.AST]:
                 yield from asked
 
 
-def matched(tree: ast.AST) -> Iterator[ast.AST]:
+def matched(code: ast.AST) -> Iterator[ast.AST]:
     """Yield the classes that code tells apart by `match`."""
-    yield from (node.cls for node in ast.walk(tree) if isinstance(node, ast.MatchClass))
+    yield from (node.cls for node in ast.walk(code) if isinstance(node, ast.MatchClass))
 
 
 def test_films_are_called_by_name_where_they_are_told_apart_and_nowhere_else() -> None:
-    found = {name for name, tree in TREES.items() if names(tree) & FILMS}
+    found = {name for name, path in FILES.items() if names(tree(path)) & FILMS}
     assert {name for name in found if not name.startswith("film/")} == TOLD_APART
-    stubs = {path: names(ast.parse(path.read_text())) for path in ROOT.rglob("*.pyi")}
+    stubs = {path: names(tree(path)) for path in ROOT.rglob("*.pyi")}
     calling = {path.name for path, named in stubs.items() if named & FILMS}
     assert calling == {"__init__.pyi"}
 
 
-@pytest.mark.parametrize("name", TREES)
+@pytest.mark.parametrize("name", FILES)
 def test_no_code_asks_what_kind_of_film_energy_or_chart_it_has(name: str) -> None:
-    tree = TREES[name]
-    assert {n for node in asked_for(tree) for n in names(node)} & kinds() == set()
+    code = tree(FILES[name])
+    assert {n for node in asked_for(code) for n in names(node)} & kinds() == set()
     known = FILMS if name in TOLD_APART else set()
-    assert {n for node in matched(tree) for n in names(node)} & kinds() <= known
+    assert {n for node in matched(code) for n in names(node)} & kinds() <= known
 
 
 def test_every_way_of_asking_is_noticed() -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import pi
+from math import cos, pi, sin
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ from eulerplateau.exact.planar import thresholds
 # kappa'(0), the tangent's angle at the crossing and beta without a film: where Newton's
 # method starts (to be converged), and the largest step in the load to the next start.
 _ELASTICA = (65.3387, -0.71052, 112.4396)
-_STEP = 100.0
+_STEP = 500.0
 _TOLERANCE = 1e-13
 _MISFIT = 1e-10
 
@@ -57,7 +57,7 @@ class FlatEight:
 
     @cached_property
     def _solution(self) -> Any:
-        return _integrate(self.load, (self.slope, self.angle, self.beta)).sol
+        return _integrate(self.load, (self.slope, self.angle, self.beta), dense=True).sol
 
 
 def flat_eight(load: float) -> FlatEight:
@@ -77,7 +77,7 @@ def flat_eight(load: float) -> FlatEight:
 
 @lru_cache(maxsize=64)
 def _start(step: int) -> tuple[float, float, float]:
-    """Return the solution at load step * 100, each from the one before."""
+    """Return the solution at load step * _STEP, each from the one before."""
     guess = _ELASTICA if step == 0 else _start(step - 1)
     return _solve(step * _STEP, guess)
 
@@ -95,18 +95,22 @@ def _solve(load: float, guess: tuple[float, float, float]) -> tuple[float, float
     return slope, angle, beta
 
 
-def _integrate(load: float, unknowns: tuple[float, ...]) -> Any:
-    """Integrate 2 kappa'' + kappa^3 - beta kappa - load = 0, bending and area along."""
+def _integrate(load: float, unknowns: tuple[float, ...], dense: bool = False) -> Any:
+    """Integrate 2 kappa'' + kappa^3 - beta kappa - load = 0, bending and area along.
+
+    Between its steps the solution is known only if it is `dense`.
+    """
     slope, angle, beta = unknowns
 
     def rates(_: float, y: FloatArray) -> list[float]:
-        kappa, dkappa, theta, x1, x2 = y[:5]
-        cosine, sine = np.cos(theta), np.sin(theta)
+        # Python's own numbers are faster than NumPy's, one by one.
+        kappa, dkappa, theta, x1, x2 = y[:5].tolist()
+        cosine, sine = cos(theta), sin(theta)
         bend = (load + beta * kappa - kappa**3) / 2
         swept = (x1 * sine - x2 * cosine) / 2
         return [dkappa, bend, kappa, cosine, sine, kappa**2, swept]
 
     start = [0.0, slope, angle, 0.0, 0.0, 0.0, 0.0]
     return solve_ivp(
-        rates, [0, 0.25], start, "DOP853", dense_output=True, rtol=1e-12, atol=1e-13
+        rates, [0, 0.25], start, "DOP853", dense_output=dense, rtol=1e-12, atol=1e-13
     )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -18,26 +20,32 @@ from tests.helpers import shapes
 
 ROOT = Path(__file__).parents[1]
 
+# Of what is imported and collected nothing is garbage, yet all of it would be looked at
+# again and again.
+gc.disable()
 
 # The longest files, so that on several cores none is left over at the end.
 LONGEST = (
     "test_rod_balance",
-    "test_generation",
     "test_docs",
     "test_comparison",
     "test_conjugate_gradient",
-    "test_render",
     "test_main",
+    "test_scaling",
+    "test_render",
+    "test_planar",
+    "test_conformal_film",
     "test_soap_branches",
     "test_exploration",
-    "test_sweep",
-    "test_extreme_meshes",
-    "test_conformal_eight",
+    "test_generation",
+    "test_variants",
 )
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the longest files."""
+    gc.freeze()
+    gc.enable()
     items.sort(key=lambda item: item.path.stem not in LONGEST)
 
 
@@ -45,6 +53,26 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def _one_blas_thread() -> Iterator[None]:
     """Two threads that wait for each other slow small matrices down a hundredfold."""
     with threadpool_limits(1, user_api="blas"):
+        yield
+
+
+@pytest.fixture(scope="session")
+def coarse_pictures() -> Iterator[None]:
+    """Figures have fewer pixels from now on, and a text is parsed once for all of them.
+
+    By itself matplotlib remembers 50 texts, which are those of two or three figures, and
+    at one resolution: here it is that of PDF and SVG for all.
+    """
+    from matplotlib import rc_context
+    from matplotlib.mathtext import MathTextParser
+
+    from eulerplateau.pictures import figure
+
+    dpi = 72
+    parsed = lru_cache(None)(MathTextParser._parse_cached.__wrapped__)
+    with pytest.MonkeyPatch.context() as patch, rc_context({"figure.dpi": dpi}):
+        patch.setattr(figure, "_DPI", dpi)
+        patch.setattr(MathTextParser, "_parse_cached", parsed)
         yield
 
 

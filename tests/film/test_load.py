@@ -112,6 +112,7 @@ def test_table_whose_run_says_no_film_is_shown_over_the_load_of_springs(
         assert {row.load_name for row in read_run(folder).rows} == {SPRING_LOAD}
 
 
+@pytest.mark.usefixtures("coarse_pictures")
 @pytest.mark.parametrize("what", ["diagram", "curvature", "onset"])
 def test_figures_are_over_the_films_own_load(tmp_path: Path, mesh: Disk, what: str) -> None:
     springs = record(tmp_path / "a", mesh, [row_at(i, v) for i, v in enumerate(loads())])

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -27,6 +30,12 @@ def oval(rings: int = 6) -> cases.DisplacedDisk:
 def hexagon() -> cases.DisplacedDisk:
     """A regular lattice: three axes are equally long."""
     return cases.disk(*shapes.hexagon_points(6))
+
+
+@cache
+def as_made(make: Callable[[], cases.DisplacedDisk], film: str, load: float) -> Outcome:
+    """The answer for a disk before anything is done to it, found once."""
+    return cases.run(make(), film, load)
 
 
 def assert_same(one: Outcome, two: Outcome, loss: float = 0.0) -> None:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh.disk import Disk
 
 
+@cache
 def hexagon_points(rings: int) -> tuple[FloatArray, IntArray]:
     """Triangular lattice in a regular hexagon of circumradius 1, corners at (±1, 0), ...
 
     Returns points (3 rings (rings + 1) + 1, 2), ring after ring from the centre, and
-    counter-clockwise triangles (6 rings², 3).
+    counter-clockwise triangles (6 rings², 3); made once, they cannot be written to.
     """
     turns = np.linspace(0.0, 2.0 * np.pi, 7)
     corner = np.stack([np.cos(turns), np.sin(turns)], axis=1)
@@ -34,7 +37,10 @@ def hexagon_points(rings: int) -> tuple[FloatArray, IntArray]:
                     triangles.append(
                         (here, left, inner + (k * (ring - 1) + i + 1) % within)
                     )
-    return np.array(points), np.array(triangles)
+    made = np.array(points), np.array(triangles)
+    for array in made:
+        array.flags.writeable = False
+    return made
 
 
 def disk_points(rings: int, jitter: float = 0.0) -> tuple[FloatArray, IntArray]:

@@ -13,7 +13,7 @@ import pytest
 
 from eulerplateau.solvers.equilibrium import Status
 from tests.helpers.equilibria import assert_same_bits
-from tests.helpers.extremes import assert_same, cases, hexagon, oval
+from tests.helpers.extremes import as_made, assert_same, cases, hexagon, oval
 
 LOADS = (1000.0, 1700.0)
 # How far a loop that may slide along itself moves the energy: its mesh's error, relative.
@@ -34,7 +34,7 @@ SAME: dict[str, Callable[[cases.DisplacedDisk], cases.DisplacedDisk]] = {
 def test_otherwise_given_all_agrees_to_rounding(
     load: float, change: str, make: Callable[[], cases.DisplacedDisk]
 ) -> None:
-    one = cases.run(make(), "area", load)
+    one = as_made(make, "area", load)
     assert one.found is not None
     assert one.found.status is Status.CONVERGED
     assert_same(one, cases.run(SAME[change](make()), "area", load))
@@ -42,7 +42,7 @@ def test_otherwise_given_all_agrees_to_rounding(
 
 @pytest.mark.parametrize("power", [-30, 30])
 def test_powers_of_two_change_not_one_bit(power: int) -> None:
-    one = cases.run(oval(), "area", 1700.0).found
+    one = as_made(oval, "area", 1700.0).found
     two = cases.run(cases.scaled(oval(), 2.0**power), "area", 1700.0).found
     assert one is not None
     assert two is not None
@@ -55,7 +55,7 @@ def test_sliver_of_1e8_changes_nothing(
     load: float, make: Callable[[cases.DisplacedDisk, float], cases.DisplacedDisk]
 ) -> None:
     """A film of true area does not know how its mesh was given: slivers are mended."""
-    one = cases.run(oval(), "area", load).found
+    one = as_made(oval, "area", load).found
     two = cases.run(make(oval(), 1e-8), "area", load).found
     assert one is not None
     assert two is not None
@@ -66,7 +66,7 @@ def test_sliver_of_1e8_changes_nothing(
 @pytest.mark.parametrize("size", [0.05, 0.5])
 @pytest.mark.parametrize("load", [0.0, 1000.0])
 def test_crumpled_start_comes_to_the_only_minimum(load: float, size: float) -> None:
-    one = cases.run(oval(), "area", load).found
+    one = as_made(oval, "area", load).found
     two = cases.run(cases.crumpled(oval(), size), "area", load).found
     assert one is not None
     assert two is not None
@@ -101,7 +101,7 @@ def test_load_beyond_contact_is_not_called_converged(load: float) -> None:
 @pytest.mark.parametrize("load", [0.0, 1e-12, 1e-6])
 def test_load_next_to_nothing_leaves_the_bare_circle(load: float) -> None:
     found = cases.run(oval(), "area", load).found
-    bare = cases.run(oval(), "dirichlet", 0.0).found
+    bare = as_made(oval, "dirichlet", 0.0).found
     assert found is not None
     assert bare is not None
     assert found.status is Status.CONVERGED

@@ -13,7 +13,16 @@ import pytest
 from eulerplateau.mesh import read_mesh
 from eulerplateau.mesh.disk import Disk
 from tests.helpers.equilibria import assert_same_bits
-from tests.helpers.extremes import EPS, FIXED, TENSIONS, assert_same, cases, hexagon, oval
+from tests.helpers.extremes import (
+    EPS,
+    FIXED,
+    TENSIONS,
+    as_made,
+    assert_same,
+    cases,
+    hexagon,
+    oval,
+)
 
 Change = Callable[[cases.DisplacedDisk], cases.DisplacedDisk]
 UNITS: dict[str, Change] = {
@@ -46,7 +55,7 @@ def test_in_other_units_all_agrees_to_rounding(
 ) -> None:
     load = cases.own_load(film, tension)
     assert_converged_alike(
-        cases.run(oval(), film, load), cases.run(UNITS[change](oval()), film, load)
+        as_made(oval, film, load), cases.run(UNITS[change](oval()), film, load)
     )
 
 
@@ -59,7 +68,7 @@ def test_turned_moved_and_renumbered_all_agrees_to_rounding(
 ) -> None:
     load = cases.own_load(film, tension)
     assert_converged_alike(
-        cases.run(make(), film, load), cases.run(MOTIONS[change](make()), film, load)
+        as_made(make, film, load), cases.run(MOTIONS[change](make()), film, load)
     )
 
 
@@ -72,14 +81,14 @@ def test_shuffled_vertices_triangles_and_corners_all_agrees_to_rounding(
 ) -> None:
     load = cases.own_load(film, tension)
     shuffled = cases.renumbered(make(), seed)
-    assert_converged_alike(cases.run(make(), film, load), cases.run(shuffled, film, load))
+    assert_converged_alike(as_made(make, film, load), cases.run(shuffled, film, load))
 
 
 @pytest.mark.parametrize("power", [-900, -30, 30, 900])
 @pytest.mark.parametrize("film", FIXED)
 def test_powers_of_two_change_not_one_bit(film: str, power: int) -> None:
     load = cases.own_load(film, 2600.0)
-    one = cases.run(oval(), film, load)
+    one = as_made(oval, film, load)
     two = cases.run(cases.scaled(oval(), 2.0**power), film, load)
     assert one.found is not None
     assert two.found is not None
@@ -98,7 +107,7 @@ def test_offset_by_d_sizes_costs_at_most_100_eps_d(
     load = cases.own_load(film, tension)
     loss = 100 * EPS * sizes
     assert_converged_alike(
-        cases.run(oval(), film, load),
+        as_made(oval, film, load),
         cases.run(cases.offset(oval(), sizes), film, load),
         loss,
     )
@@ -122,8 +131,9 @@ def test_single_precision_input_costs_no_more_than_its_own_rounding(
 ) -> None:
     """As an offset that leaves as many digits: eps of single precision is 2^29 eps."""
     load = cases.own_load(film, tension)
-    one, two = (cases.run(case, film, load) for case in (oval(), cases.single(oval())))
-    assert_converged_alike(one, two, loss=100 * float(np.finfo(np.float32).eps))
+    two = cases.run(cases.single(oval()), film, load)
+    loss = 100 * float(np.finfo(np.float32).eps)
+    assert_converged_alike(as_made(oval, film, load), two, loss)
 
 
 @pytest.mark.parametrize("factor", [1e-9, 1.0, 1e9])

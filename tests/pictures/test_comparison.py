@@ -116,7 +116,7 @@ def test_same_runs_make_the_same_file(tmp_path: Path, sweep: Path) -> None:
     for ending in ("pdf", "svg"):
         files = [tmp_path / f"{name}.{ending}" for name in "ab"]
         for path in files:
-            plot_runs(read_runs([sweep]), "energy", path)
+            plot_runs(read_runs([sweep]), "curvature", path)
         assert files[0].read_bytes() == files[1].read_bytes()
 
 

@@ -223,7 +223,7 @@ def test_every_algorithm_meets_larger_targets(polygon, algorithm, vertices):
 
 
 def test_algorithm_8_repeats_itself_with_other_things_in_memory():
-    wanted = spec(STRETCHED, edge_length=1 / 12, algorithm=8)
+    wanted = spec(STRETCHED, edge_length=1 / 24, algorithm=8)
     random = np.random.default_rng(0)
     ballast, digests = [], set()
     for _ in range(12):

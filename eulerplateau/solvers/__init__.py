@@ -5,7 +5,7 @@
                   when it counts as converged, and what each status advises
     newton.py     by Newton on the loop; chooses among quadratic.py, soap.py, in_plane/
     descent.py    downhill to a minimum, on trust_region.py; primal_dual.py: the fast end
-    second_variation.py  Hessian and spectrum at one loop; modes.py: the softest modes;
+    second_variation.py  Hessian and spectrum at one loop, by tangent_coordinates.py;
                   models.py, quadratic_models.py: of which part, large_loops/ for large ones
     conjugate_gradient.py  the paper's method, in the unknowns of trial_space.py
     threads.py    one BLAS thread while something is solved

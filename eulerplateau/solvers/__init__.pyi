@@ -8,7 +8,7 @@ from .equilibrium import (
     with_stability as with_stability,
 )
 from .models import DenseModels as DenseModels
-from .modes import lowest_modes as lowest_modes
+from .newton import lowest_modes as lowest_modes
 from .problem import Problem as Problem
 from .second_variation import (
     TangentModel as TangentModel,

@@ -1,8 +1,9 @@
-"""Newton on the loop: the film's interior eliminated, an iterate is a loop.
+"""Newton on the loop, and the softest modes of what it comes to.
 
-With a film of fixed weights the interior is eliminated exactly and once (quadratic.py); a
-soap film's at each step, near the last shape (soap.py); a film kept in its plane has no use
-for one (in_plane/). Which is the case is asked here and nowhere else.
+The film's interior is eliminated, so that an iterate is a loop: of a film of fixed weights
+exactly and once (quadratic.py); of a soap film at each step, near the last shape (soap.py);
+a film kept in its plane has no use for one (in_plane/). Which is the case is asked here and
+nowhere else.
 
 The iteration ends where rounding begins. That of the positions alone unbalances the forces
 by about eps / h^3 for edges of length h, relative to the largest: a few 1e-7 at 1,700 loop
@@ -19,9 +20,11 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import AreaFilm, Film, PlaneFilm
+from eulerplateau.film import AreaFilm, Film, PlaneFilm, QuadraticFilm
+from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
+from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.problem import Problem
 
 
@@ -74,3 +77,33 @@ def _search_for(film: Film) -> Search:
         case _:
             from eulerplateau.solvers.quadratic import search
     return search
+
+
+def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, FloatArray]:
+    """Return up to `count` modes {"mode_0": (n_v, 3), ...}, the lowest eigenvalue first.
+
+    The film follows the loop; the largest displacement is 1. On large loops as many modes
+    are known as are unstable or neutral, and one more.
+    """
+    film = problem.film.of_loop(found.shape)
+    energy = film.energy(problem.loop, found.load)
+    models = models_for(problem.film, problem.loop, energy)
+    x_loop = film.project(found.shape.x_loop)
+    model = models.at(x_loop)
+    modes = {}
+    for number, column in enumerate(models.modes(model, count).T):
+        moved = film.displacement(x_loop, (column / model.scale).reshape(x_loop.shape))
+        largest = float(np.linalg.norm(moved, axis=1).max())
+        modes[f"mode_{number}"] = moved / largest
+    return modes
+
+
+def models_for(film: Film, loop: Loop, energy: LoopEnergy) -> Models:
+    """Return how the second variation of a film's energy is looked at."""
+    match film:
+        case QuadraticFilm():
+            from eulerplateau.solvers.quadratic_models import quadratic_models
+
+            return quadratic_models(loop, energy)
+        case _:
+            return DenseModels(energy)

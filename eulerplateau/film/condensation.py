@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpotrs
+from scipy.linalg.lapack import dpotrs, dtrtrs
 from scipy.sparse import csc_array
 from threadpoolctl import threadpool_limits
 
@@ -84,6 +84,34 @@ class Condensation:
         x = np.empty_like(ordered)
         x[self._order] = ordered
         return x
+
+    def unfold(self, x_loop: FloatArray, inside: FloatArray) -> FloatArray:
+        """Return `extend` of a loop (n_b, m), plus C inside (n, m).
+
+        C is the factor of L_ii = (C C^T)^-1: in these variables (n_i, m), each a
+        displacement from rest, the stiffness of the interior is 1.
+        """
+        ordered = np.empty((len(self._order), x_loop.shape[1]))
+        ordered[len(inside) :] = x_loop
+        for part in reversed(self._parts):
+            own = dtrtrs(part.factor, inside[part.start : part.stop], lower=1, trans=1)[0]
+            ordered[part.start : part.stop] = part.extension @ ordered[part.around] + own
+        x = np.empty_like(ordered)
+        x[self._order] = ordered
+        return x
+
+    def fold(self, forces: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return what forces (n, m) are on a loop (n_b, m) and on variables (n_i, m).
+
+        The adjoint of `unfold`.
+        """
+        ordered = forces[self._order]
+        inside = np.empty((len(ordered) - len(self.stiffness), ordered.shape[1]))
+        for part in self._parts:
+            own = ordered[part.start : part.stop]
+            ordered[part.around] += part.extension.T @ own
+            inside[part.start : part.stop] = dtrtrs(part.factor, own, lower=1)[0]
+        return ordered[len(inside) :], inside
 
 
 def factorise(elimination: Elimination, entries: FloatArray) -> Condensation:

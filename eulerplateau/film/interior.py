@@ -127,6 +127,7 @@ class LocalFilm(ABC):
     x : (n_v, 3) float, the reference shape
     sides : its triangles
     normals : (n_i, 3) float
+    follower : how its mesh follows the loop, harmonic on the reference shape
     variations : how interior vertices move: along these normals, or freely
     """
 
@@ -134,7 +135,7 @@ class LocalFilm(ABC):
     x: FloatArray
     sides: TriangleGeometry
     normals: FloatArray
-    _follower: Condensation
+    follower: Condensation
     variations: InteriorUnknowns
     # The last films asked for: a solver comes back to them for force, energy and Hessian.
     _recent: list[FilmAtRest] = field(default_factory=list, init=False, repr=False)
@@ -154,11 +155,11 @@ class LocalFilm(ABC):
 
     def follow(self, moved: FloatArray) -> FloatArray:
         """Return how the mesh (n_v, 3) follows a displacement of the loop (n_b, 3)."""
-        return self._follower.extend(moved)
+        return self.follower.extend(moved)
 
     def carry(self, gradient: FloatArray) -> FloatArray:
         """Return g_b + G^T g_i (n_b, 3): what a gradient (n_v, 3) comes to on the loop."""
-        return self._follower.carry(gradient)
+        return self.follower.carry(gradient)
 
     def tilt(self, sides: TriangleGeometry) -> float:
         """Return the smallest cosine between a film's normals and the reference's."""

@@ -112,7 +112,7 @@ class SweepSettings(Settings):
 class SolverSettings(Settings):
     """Which solver, and after how many iterations it gives up on a load."""
 
-    name: Literal["newton", "cg"] = "newton"
+    name: Literal["newton", "cg", "cg-plain"] = "newton"
     max_iterations: int | None = Field(default=None, ge=1)
 
 

@@ -23,8 +23,7 @@ from scipy.linalg import LinAlgError
 from scipy.optimize import minimize
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.interruption import heed
-from eulerplateau.loop import kernels
+from eulerplateau.loop import Loop, kernels
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import (
     LENGTH_TOLERANCE,
@@ -34,14 +33,14 @@ from eulerplateau.solvers.equilibrium import (
 )
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.start import smooth_kick
-from eulerplateau.solvers.trial_space import kick_axis, trial_space
+from eulerplateau.solvers.trial_space import TrialSpace, kick_axis, trial_space
+from eulerplateau.solvers.variables import Variables, conditioned
 
 # A tenfold tighter residual for every update of the tensions; the floor leaves the
 # tensions' last update room below the accepted tolerance.
 _FIRST_TOLERANCE = 1e-2
 _TIGHTENING = 0.1
 _FINAL_TOLERANCE = 0.3 * RESIDUAL_TOLERANCE
-_ITERATIONS_PER_BASE = 2000
 # Kicks before the load is given up as lying at a transition.
 _KICKS = 5
 _SAME_ENERGY = 1e-8
@@ -50,6 +49,29 @@ _FILM_BALANCE = 1e-3
 # Relative length error above which the penalty may have to grow, and the least penalty.
 _STRETCHED = 1e-2
 _STIFFER_THAN_BENDING = 1000.0
+
+
+@dataclass(frozen=True)
+class Method:
+    """How conjugate gradients are used.
+
+    Attributes
+    ----------
+    variables : what they search in
+    iterations : from one base point
+    stiffer : the penalty of the lengths, of what the paper's variables bear
+    tensions_follow : whether tensions are updated at every base point, or at balance only
+    """
+
+    variables: Callable[[TrialSpace, Loop, FloatArray, float], Variables]
+    iterations: int
+    stiffer: float
+    tensions_follow: bool
+
+
+# Where a stiff edge costs no iterations the penalty is as large as rounding lets it be, and
+# a film that turns takes its tensions along. Tensions that stay behind draw it to and fro.
+CONDITIONED = Method(conditioned, 50, 1e3, tensions_follow=True)
 
 
 @dataclass(frozen=True)
@@ -70,17 +92,30 @@ def minimise(
     max_iterations: int | None,
     observe: Callable[[FloatArray], None],
 ) -> Equilibrium:
-    """Return the minimum reached from a start, confirmed by a kick and a new solve.
+    """Return the minimum reached from a start, in well conditioned variables.
 
     `observe` is shown the loop (n_b, 3) each time the base point moves. See solving.solve.
     """
+    return search(problem, load, start, tensions, max_iterations, observe, CONDITIONED)
+
+
+def search(
+    problem: Problem,
+    load: float,
+    start: Shape,
+    tensions: FloatArray | None,
+    max_iterations: int | None,
+    observe: Callable[[FloatArray], None],
+    method: Method,
+) -> Equilibrium:
+    """Return the minimum reached from a start, confirmed by a kick and a new solve."""
     started = time.perf_counter()
     if (unusable := problem.unusable_start(start, load)) is not None:
         return unusable
     limit = 1_000_000 if max_iterations is None else max_iterations
     if tensions is None:
         tensions = np.zeros(len(start.loop))
-    best = _descend(problem, start, tensions, load, limit, observe)
+    best = _descend(problem, start, tensions, load, limit, observe, method)
     spent = best.iterations
     confirmed = False
     rng = np.random.default_rng(0)
@@ -90,7 +125,8 @@ def minimise(
             break
         shape = best.shape
         kicked = shape.moved(shape.x + smooth_kick(shape.x_loop, shape.x, rng, axis))
-        again = _descend(problem, kicked, best.tensions, load, limit - spent, observe)
+        left = limit - spent
+        again = _descend(problem, kicked, best.tensions, load, left, observe, method)
         spent += again.iterations
         confirmed = again.converged and (
             abs(again.energy - best.energy) <= _SAME_ENERGY * abs(best.energy)
@@ -111,12 +147,12 @@ def _descend(
     load: float,
     budget: int,
     observe: Callable[[FloatArray], None],
+    method: Method,
 ) -> Equilibrium:
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
-    penalty, stretched = _first_penalty(problem, load), np.inf
+    penalty, stretched = method.stiffer * _first_penalty(problem, load), np.inf
     iterate, at_rest = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True
     while True:
-        heed()
         try:
             shape = iterate.shape if at_rest else _rested(problem, iterate.shape)
             shape = problem.film.prepared(shape)
@@ -148,12 +184,14 @@ def _descend(
             forces, tension, scale = _forces(problem, iterate, load, penalty)
         if iterate.iterations >= budget:
             return _record(problem, iterate, load, Status.ITERATION_LIMIT)
-        after = _minimise(problem, iterate, load, penalty, forces, tension, scale)
+        after = _minimise(problem, method, iterate, load, penalty, forces, tension, scale)
         if after is None:
             return _record(problem, iterate, load, Status.STALLED)
         if not np.isfinite(after.shape.x).all():
             return _record(problem, iterate, load, Status.NOT_FINITE)
         iterate = after
+        if method.tensions_follow:
+            iterate = replace(iterate, tensions=_tension(problem, iterate, penalty))
         observe(iterate.shape.x_loop)
 
 
@@ -189,8 +227,7 @@ def _forces(
 ) -> tuple[FloatArray, FloatArray, float]:
     """Return grad A (n_v, 3), the tensions lambda + mu c / s (n_b,), the largest force."""
     shape = iterate.shape
-    excess = problem.loop.constraint(shape.x_loop)
-    tension = iterate.tensions + penalty * excess / problem.loop.rest_lengths
+    tension = _tension(problem, iterate, penalty)
     parts = (
         problem.bending_energy(shape)[1],
         load * problem.film.forces(shape),
@@ -201,8 +238,15 @@ def _forces(
     return total, tension, scale
 
 
+def _tension(problem: Problem, iterate: _Iterate, penalty: float) -> FloatArray:
+    """Return the tensions lambda + mu c / s (n_b,)."""
+    excess = problem.loop.constraint(iterate.shape.x_loop)
+    return iterate.tensions + penalty * excess / problem.loop.rest_lengths
+
+
 def _minimise(
     problem: Problem,
+    method: Method,
     iterate: _Iterate,
     load: float,
     penalty: float,
@@ -210,21 +254,20 @@ def _minimise(
     tension: FloatArray,
     scale: float,
 ) -> _Iterate | None:
-    """Run scipy's conjugate gradients from the iterate as base point; None if stuck.
-
-    The first step tried is as long as the gradient. In the unit of displacement in which
-    the loop's stiffest bending mode, 32 / s^3, has stiffness 1 that step is a good one; in
-    units of L it overshoots so far that the line search gives up.
-    """
+    """Run scipy's conjugate gradients from the iterate as base point; None if stuck."""
     shape = iterate.shape
     space = trial_space(problem, shape, load)
+    variables = method.variables(space, problem.loop, shape.x_loop, penalty)
     springs, weights = space.springs
     base = space.lift(forces)
-    unit = float(np.sqrt(problem.loop.rest_lengths.min() ** 3 / 32))
+    gradient = np.empty_like(base)
+    goal = iterate.tolerance * scale
+    last = reached = np.zeros(variables.size)
 
-    def difference(scaled: FloatArray) -> tuple[float, FloatArray]:
-        moved = space.displacement(unit * scaled)
-        gradient = np.empty_like(base)
+    def difference(y: FloatArray) -> tuple[float, FloatArray]:
+        nonlocal last
+        last = y.copy()
+        moved = variables.displacement(y)
         value = kernels.augmented_difference(
             moved,
             shape.x,
@@ -238,35 +281,34 @@ def _minimise(
             gradient,
         )
         value += space.beyond_linear(moved, gradient)
-        return value, unit * space.collect(gradient)
+        return value, variables.derivative(y, gradient)
 
-    reached = np.zeros(space.size)
-
-    def keep(scaled: FloatArray) -> None:
-        if not space.holds(space.displacement(unit * scaled)):
+    def keep(y: FloatArray) -> None:
+        nonlocal reached
+        if not space.holds(variables.displacement(y)):
             raise StopIteration
-        reached[:] = scaled
+        reached = y.copy()
+        if not np.array_equal(last, y):
+            difference(y)
+        # A little less: else rounding might find nothing to do here, and no end there.
+        if float(np.abs(space.collect(gradient)).max()) <= 0.99 * goal:
+            raise StopIteration
 
     found = minimize(
         difference,
-        np.zeros(space.size),
+        reached,
         jac=True,
         method="CG",
         callback=keep,
-        options={
-            # A little less: else rounding might find nothing to do here, and no end there.
-            "gtol": 0.99 * unit * iterate.tolerance * scale,
-            "maxiter": _ITERATIONS_PER_BASE,
-        },
+        options={"gtol": 0.0, "maxiter": method.iterations},
     )
-    balanced = float(np.abs(forces).max()) <= iterate.tolerance * scale
     # At rest already: the next tolerance will tell. Else in other unknowns than forces are.
-    if not reached.any() and not (found.success and balanced):
+    if not reached.any() and not float(np.abs(forces).max()) <= goal:
         return None
     return replace(
         iterate,
-        shape=space.reached(unit * reached),
-        iterations=iterate.iterations + int(found.nit),
+        shape=space.reached(variables.displacement(reached)),
+        iterations=iterate.iterations + max(int(found.nit), 1),
     )
 
 

@@ -22,7 +22,7 @@ LARGEST_LOAD = 1e100
 RESOLVED_TURNING = 30.0 * (1 + 1e-9)
 
 # The lowest eigenvalue of the bare circle, 2 (2 pi)^4 times 36/5.
-_SOFTEST_BENDING = 22443.0
+SOFTEST_BENDING = 22443.0
 
 
 class Status(Enum):
@@ -77,7 +77,7 @@ class Stability:
     @property
     def blind(self) -> bool:
         """Whether rounding hides eigenvalues, even as large as those of the bare loop."""
-        return self.n_neutral > 0 and self.error_bound > 0.1 * _SOFTEST_BENDING
+        return self.n_neutral > 0 and self.error_bound > 0.1 * SOFTEST_BENDING
 
     @property
     def n_unstable(self) -> int:

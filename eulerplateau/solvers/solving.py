@@ -18,7 +18,7 @@ from eulerplateau.solvers.start import displaced
 from eulerplateau.solvers.threads import one_thread
 
 # By the names of solver.name in a run's specification; only the one asked for is loaded.
-SOLVERS = {"newton": "newton", "cg": "conjugate_gradient"}
+SOLVERS = {"newton": "newton", "cg": "conjugate_gradient", "cg-plain": "plain_gradient"}
 
 Start = Shape | Equilibrium | ArrayLike
 

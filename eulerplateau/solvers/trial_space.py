@@ -60,8 +60,27 @@ class TrialSpace(Protocol):
     def holds(self, moved: FloatArray) -> bool:
         """Return whether the film is still close enough to the base shape."""
 
-    def reached(self, unknown: FloatArray) -> Shape:
-        """Return the shape that unknowns (m,) lead to."""
+    def reached(self, moved: FloatArray) -> Shape:
+        """Return the shape that a displacement (n_v, 3) leads to."""
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """How a film at rest resists its loop (n_b, n_b): symmetric, nowhere negative.
+
+        Near enough to the second derivative for variables.py, the same for each coordinate.
+        """
+
+    def varied(self, moves: FloatArray) -> FloatArray:
+        """Return displacements of the loop (n_b, 3, k) less what is not varied of them."""
+
+    def unfold(self, loop: FloatArray, inside: FloatArray) -> FloatArray:
+        """Return the displacement (n_v, 3) of a film that follows its loop (n_b, 3).
+
+        Plus what is varied inside (k,), in variables in which the film's stiffness is 1.
+        """
+
+    def fold(self, gradient: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the derivatives (n_b, 3) and (k,) by what `unfold` takes."""
 
 
 def trial_space(problem: Problem, shape: Shape, load: float) -> TrialSpace:
@@ -121,8 +140,29 @@ class _Everywhere:
     def holds(self, moved: FloatArray) -> bool:
         return True
 
-    def reached(self, unknown: FloatArray) -> Shape:
-        return self.shape.moved(self.shape.x + self.displacement(unknown))
+    def reached(self, moved: FloatArray) -> Shape:
+        return self.shape.moved(self.shape.x + moved)
+
+
+    @property
+    def stiffness(self) -> FloatArray:
+        return 2 * self.load * self.film.of_loop(self.shape).condensed.stiffness
+
+    def varied(self, moves: FloatArray) -> FloatArray:
+        return moves
+
+    def unfold(self, loop: FloatArray, inside: FloatArray) -> FloatArray:
+        own = inside.reshape(-1, 3) * _softness(2 * self.load)
+        return self.film.of_loop(self.shape).condensed.unfold(loop, own)
+
+    def fold(self, gradient: FloatArray) -> tuple[FloatArray, FloatArray]:
+        loop, inside = self.film.of_loop(self.shape).condensed.fold(gradient)
+        return loop, (inside * _softness(2 * self.load)).ravel()
+
+
+def _softness(load: float) -> float:
+    """Return the unit of displacement in which a film's stiffness, the load, is 1."""
+    return 1 / float(np.sqrt(load)) if load > 0.0 else 1.0
 
 
 @dataclass(frozen=True)
@@ -132,15 +172,17 @@ class _Sliding:
     loop: Loop
     slide: FloatArray | None
 
-    def kept(self, moved: FloatArray) -> FloatArray:
-        """Return a displacement (n_b, 3) of the loop without its part along `slide`."""
+    def varied(self, moves: FloatArray) -> FloatArray:
+        """Return displacements of the loop without their part along `slide`."""
         if self.slide is None:
-            return moved
-        share = float(np.sum(self.loop.mean_lengths[:, None] * self.slide * moved))
-        return moved - share * self.slide
+            return moves
+        weights = self.loop.mean_lengths[:, None] * self.slide
+        share = np.einsum("vd,vdk->k", weights, moves)
+        kept: FloatArray = moves - self.slide[:, :, None] * share
+        return kept
 
     def pulled(self, forces: FloatArray) -> FloatArray:
-        """Return forces (n_b, 3) on the loop without what `kept` makes nothing of."""
+        """Return forces (n_b, 3) on the loop without what `varied` makes nothing of."""
         return remove_sliding(self.slide, self.loop, forces)
 
     @property
@@ -169,7 +211,7 @@ class _AlongNormals(_Sliding):
 
     def displacement(self, unknown: FloatArray) -> FloatArray:
         local, n = self.local, 3 * len(self.film.loop)
-        moved = local.follow(self.kept(unknown[:n].reshape(-1, 3)))
+        moved = local.follow(self.varied(unknown[:n].reshape(-1, 3, 1))[:, :, 0])
         moved[self.film.interior] += unknown[n:, None] * local.normals
         return moved
 
@@ -188,8 +230,30 @@ class _AlongNormals(_Sliding):
     def holds(self, moved: FloatArray) -> bool:
         return self.local.holds(self.local.tiling.sides(self.local.x + moved))
 
-    def reached(self, unknown: FloatArray) -> Shape:
-        return self.shape.moved(self.shape.x + self.displacement(unknown))
+    def reached(self, moved: FloatArray) -> Shape:
+        return self.shape.moved(self.shape.x + moved)
+
+
+    @property
+    def stiffness(self) -> FloatArray:
+        # Of Dirichlet's energy, which is the area where the map is conformal, else more.
+        return self.load * self.local.follower.stiffness
+
+    def unfold(self, loop: FloatArray, inside: FloatArray) -> FloatArray:
+        local = self.local
+        moved = local.follow(loop)
+        still = np.zeros((len(loop), 1))
+        heights = local.follower.unfold(still, _softness(self.load) * inside[:, None])
+        moved[self.film.interior] += heights[self.film.interior] * local.normals
+        return moved
+
+    def fold(self, gradient: FloatArray) -> tuple[FloatArray, FloatArray]:
+        local = self.local
+        along = np.zeros((len(gradient), 1))
+        inside = gradient[self.film.interior]
+        along[self.film.interior, 0] = (inside * local.normals).sum(axis=1)
+        heights = local.follower.fold(along)[1][:, 0]
+        return local.carry(gradient), _softness(self.load) * heights
 
 
 @dataclass(frozen=True)
@@ -206,9 +270,7 @@ class _InPlane(_Sliding):
         return forces
 
     def displacement(self, unknown: FloatArray) -> FloatArray:
-        moved = np.zeros_like(self.shape.x)
-        moved[self.shape.loop] = self.kept(self.film.flattened(unknown.reshape(-1, 3)))
-        return moved
+        return self.unfold(self.varied(unknown.reshape(-1, 3, 1))[:, :, 0], unknown[:0])
 
     def collect(self, gradient: FloatArray) -> FloatArray:
         return self.film.flattened(self.pulled(gradient[self.shape.loop])).ravel()
@@ -224,7 +286,24 @@ class _InPlane(_Sliding):
     def holds(self, moved: FloatArray) -> bool:
         return True
 
-    def reached(self, unknown: FloatArray) -> Shape:
+    def reached(self, moved: FloatArray) -> Shape:
         # The mesh goes with its loop, for whoever looks at it.
-        film, moved = self.film.of_loop(self.shape), self.displacement(unknown)
+        film = self.film.of_loop(self.shape)
         return film.shape(film.project((self.shape.x + moved)[self.shape.loop]))
+
+    @property
+    def stiffness(self) -> FloatArray:
+        n = len(self.shape.loop)
+        return np.zeros((n, n))
+
+    def varied(self, moves: FloatArray) -> FloatArray:
+        in_plane = np.einsum("vdk,ad,ae->vek", moves, self.film.axes, self.film.axes)
+        return super().varied(in_plane)
+
+    def unfold(self, loop: FloatArray, inside: FloatArray) -> FloatArray:
+        moved = np.zeros_like(self.shape.x)
+        moved[self.shape.loop] = loop
+        return moved
+
+    def fold(self, gradient: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return gradient[self.shape.loop], np.zeros(0)

@@ -1,0 +1,27 @@
+"""The paper's method as it is: conjugate gradients on the positions themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.mesh import Shape
+from eulerplateau.solvers.conjugate_gradient import Method, search
+from eulerplateau.solvers.equilibrium import Equilibrium
+from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers.variables import plain
+
+# The base point moves along every few thousand iterations.
+PLAIN = Method(plain, 2000, 1.0, tensions_follow=False)
+
+
+def minimise(
+    problem: Problem,
+    load: float,
+    start: Shape,
+    tensions: FloatArray | None,
+    max_iterations: int | None,
+    observe: Callable[[FloatArray], None],
+) -> Equilibrium:
+    """Return the minimum reached from a start. See conjugate_gradient.search."""
+    return search(problem, load, start, tensions, max_iterations, observe, PLAIN)

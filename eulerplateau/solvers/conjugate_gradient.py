@@ -23,11 +23,12 @@ from scipy.linalg import LinAlgError
 from scipy.optimize import minimize
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import Loop, kernels
+from eulerplateau.loop import Loop, kernels, largest_turning
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import (
     LENGTH_TOLERANCE,
     RESIDUAL_TOLERANCE,
+    RESOLVED_TURNING,
     Equilibrium,
     Status,
 )
@@ -36,11 +37,11 @@ from eulerplateau.solvers.start import smooth_kick
 from eulerplateau.solvers.trial_space import TrialSpace, kick_axis, trial_space
 from eulerplateau.solvers.variables import Variables, conditioned
 
-# A tenfold tighter residual for every update of the tensions; the floor leaves the
-# tensions' last update room below the accepted tolerance.
+# A tenfold tighter residual for every update of the tensions, down to a part of the one
+# asked for: that leaves the tensions' last update room.
 _FIRST_TOLERANCE = 1e-2
 _TIGHTENING = 0.1
-_FINAL_TOLERANCE = 0.3 * RESIDUAL_TOLERANCE
+_ROOM = 0.3
 # Kicks before the load is given up as lying at a transition.
 _KICKS = 5
 _SAME_ENERGY = 1e-8
@@ -49,6 +50,9 @@ _FILM_BALANCE = 1e-3
 # Relative length error above which the penalty may have to grow, and the least penalty.
 _STRETCHED = 1e-2
 _STIFFER_THAN_BENDING = 1000.0
+# Iterations, in those from one base point, on loops that turn farther than their mesh can
+# carry, before such a loop is taken for where the way leads.
+_PATIENCE = 20
 
 
 @dataclass(frozen=True)
@@ -61,17 +65,28 @@ class Method:
     iterations : from one base point
     stiffer : the penalty of the lengths, of what the paper's variables bear
     tensions_follow : whether tensions are updated at every base point, or at balance only
+    residual : what they aim at
+    limit : iterations after which a load is given up
     """
 
     variables: Callable[[TrialSpace, Loop, FloatArray, float], Variables]
     iterations: int
     stiffer: float
     tensions_follow: bool
+    residual: float
+    limit: int
 
 
 # Where a stiff edge costs no iterations the penalty is as large as rounding lets it be, and
 # a film that turns takes its tensions along. Tensions that stay behind draw it to and fro.
-CONDITIONED = Method(conditioned, 50, 1e3, tensions_follow=True)
+CONDITIONED = Method(
+    variables=conditioned,
+    iterations=50,
+    stiffer=1e3,
+    tensions_follow=True,
+    residual=0.1 * RESIDUAL_TOLERANCE,
+    limit=20_000,
+)
 
 
 @dataclass(frozen=True)
@@ -112,7 +127,7 @@ def search(
     started = time.perf_counter()
     if (unusable := problem.unusable_start(start, load)) is not None:
         return unusable
-    limit = 1_000_000 if max_iterations is None else max_iterations
+    limit = method.limit if max_iterations is None else max_iterations
     if tensions is None:
         tensions = np.zeros(len(start.loop))
     best = _descend(problem, start, tensions, load, limit, observe, method)
@@ -131,9 +146,9 @@ def search(
         confirmed = again.converged and (
             abs(again.energy - best.energy) <= _SAME_ENERGY * abs(best.energy)
         )
+        best = again if again.energy < best.energy or not again.converged else best
         if confirmed:
             break
-        best = again if again.energy < best.energy or not again.converged else best
     if best.converged and not confirmed:
         best = replace(best, status=Status.SADDLE)
     seconds = time.perf_counter() - started
@@ -152,6 +167,7 @@ def _descend(
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
     penalty, stretched = method.stiffer * _first_penalty(problem, load), np.inf
     iterate, at_rest = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True
+    carried = 0
     while True:
         try:
             shape = iterate.shape if at_rest else _rested(problem, iterate.shape)
@@ -170,10 +186,10 @@ def _descend(
             iterate = replace(
                 iterate,
                 tensions=tension,
-                tolerance=max(_TIGHTENING * iterate.tolerance, _FINAL_TOLERANCE),
+                tolerance=max(_TIGHTENING * iterate.tolerance, _ROOM * method.residual),
             )
             before, stretched = stretched, problem.length_error(shape)
-            if residual <= RESIDUAL_TOLERANCE and stretched <= LENGTH_TOLERANCE:
+            if residual <= method.residual and stretched <= LENGTH_TOLERANCE:
                 at_rest = _film_at_rest(problem, shape)
                 if at_rest:
                     return _record(problem, iterate, load, Status.CONVERGED)
@@ -183,16 +199,20 @@ def _descend(
                 penalty *= 4
             forces, tension, scale = _forces(problem, iterate, load, penalty)
         if iterate.iterations >= budget:
-            return _record(problem, iterate, load, Status.ITERATION_LIMIT)
+            return _given_up(problem, iterate, load, Status.ITERATION_LIMIT)
         after = _minimise(problem, method, iterate, load, penalty, forces, tension, scale)
         if after is None:
-            return _record(problem, iterate, load, Status.STALLED)
+            return _given_up(problem, iterate, load, Status.STALLED)
         if not np.isfinite(after.shape.x).all():
             return _record(problem, iterate, load, Status.NOT_FINITE)
         iterate = after
         if method.tensions_follow:
             iterate = replace(iterate, tensions=_tension(problem, iterate, penalty))
         observe(iterate.shape.x_loop)
+        if largest_turning(iterate.shape.x_loop) <= RESOLVED_TURNING:
+            carried = iterate.iterations
+        elif iterate.iterations - carried >= _PATIENCE * method.iterations:
+            return _given_up(problem, iterate, load, Status.UNRESOLVED)
 
 
 def _rested(problem: Problem, shape: Shape) -> Shape:
@@ -263,9 +283,10 @@ def _minimise(
     gradient = np.empty_like(base)
     goal = iterate.tolerance * scale
     last = reached = np.zeros(variables.size)
+    moved = np.zeros_like(base)
 
     def difference(y: FloatArray) -> tuple[float, FloatArray]:
-        nonlocal last
+        nonlocal last, moved
         last = y.copy()
         moved = variables.displacement(y)
         value = kernels.augmented_difference(
@@ -285,11 +306,11 @@ def _minimise(
 
     def keep(y: FloatArray) -> None:
         nonlocal reached
-        if not space.holds(variables.displacement(y)):
-            raise StopIteration
-        reached = y.copy()
         if not np.array_equal(last, y):
             difference(y)
+        if not space.holds(moved):
+            raise StopIteration
+        reached = last
         # A little less: else rounding might find nothing to do here, and no end there.
         if float(np.abs(space.collect(gradient)).max()) <= 0.99 * goal:
             raise StopIteration
@@ -310,6 +331,19 @@ def _minimise(
         shape=space.reached(variables.displacement(reached)),
         iterations=iterate.iterations + max(int(found.nit), 1),
     )
+
+
+def _given_up(
+    problem: Problem, iterate: _Iterate, load: float, status: Status
+) -> Equilibrium:
+    """Record where a search ended that found no more to gain, or no time left for it."""
+    found = _record(problem, iterate, load, status)
+    accepted = (
+        found.residual <= RESIDUAL_TOLERANCE
+        and found.length_error <= LENGTH_TOLERANCE
+        and _film_at_rest(problem, iterate.shape)
+    )
+    return replace(found, status=Status.CONVERGED) if accepted else found
 
 
 def _record(

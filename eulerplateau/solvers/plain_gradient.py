@@ -7,12 +7,19 @@ from collections.abc import Callable
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.conjugate_gradient import Method, search
-from eulerplateau.solvers.equilibrium import Equilibrium
+from eulerplateau.solvers.equilibrium import RESIDUAL_TOLERANCE, Equilibrium
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.variables import plain
 
 # The base point moves along every few thousand iterations.
-PLAIN = Method(plain, 2000, 1.0, tensions_follow=False)
+PLAIN = Method(
+    variables=plain,
+    iterations=2000,
+    stiffer=1.0,
+    tensions_follow=False,
+    residual=RESIDUAL_TOLERANCE,
+    limit=1_000_000,
+)
 
 
 def minimise(

@@ -47,6 +47,8 @@ _KICKS = 5
 _SAME_ENERGY = 1e-8
 # Forces inside a film at rest over the largest of its forces on the loop.
 _FILM_BALANCE = 1e-3
+# Relative length error up to which a loop is near enough to be held as it moves.
+_NEAR = 0.1
 # Relative length error above which the penalty may have to grow, and the least penalty.
 _STRETCHED = 1e-2
 _STIFFER_THAN_BENDING = 1000.0
@@ -165,7 +167,7 @@ def _descend(
     method: Method,
 ) -> Equilibrium:
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
-    penalty, stretched = method.stiffer * _first_penalty(problem, load), np.inf
+    first, stretched, firmer = _first_penalty(problem, load), np.inf, 1.0
     iterate, at_rest = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True
     carried = 0
     while True:
@@ -173,6 +175,8 @@ def _descend(
             shape = iterate.shape if at_rest else _rested(problem, iterate.shape)
             shape = problem.film.prepared(shape)
             iterate, at_rest = replace(iterate, shape=shape), True
+            near = problem.length_error(shape) <= _NEAR
+            penalty = firmer * first * (method.stiffer if near else 1.0)
             forces, tension, scale = _forces(problem, iterate, load, penalty)
         except LinAlgError:  # no film, or no loop
             return _record(problem, iterate, load, Status.STALLED)
@@ -196,7 +200,7 @@ def _descend(
                 continue
             # Tensions that chase a loop to and fro get nowhere: hold it faster.
             if stretched > max(_STRETCHED, 0.5 * before):
-                penalty *= 4
+                penalty, firmer = 4 * penalty, 4 * firmer
             forces, tension, scale = _forces(problem, iterate, load, penalty)
         if iterate.iterations >= budget:
             return _given_up(problem, iterate, load, Status.ITERATION_LIMIT)
@@ -206,7 +210,7 @@ def _descend(
         if not np.isfinite(after.shape.x).all():
             return _record(problem, iterate, load, Status.NOT_FINITE)
         iterate = after
-        if method.tensions_follow:
+        if method.tensions_follow and near:
             iterate = replace(iterate, tensions=_tension(problem, iterate, penalty))
         observe(iterate.shape.x_loop)
         if largest_turning(iterate.shape.x_loop) <= RESOLVED_TURNING:

@@ -68,6 +68,7 @@ class Method:
     stiffer : the penalty of the lengths, of what the paper's variables bear
     tensions_follow : whether tensions are updated at every base point, or at balance only
     residual : what they aim at
+    kicked_residual, kicked_limit : what they aim at after a kick, in how many iterations
     limit : iterations after which a load is given up
     """
 
@@ -76,6 +77,8 @@ class Method:
     stiffer: float
     tensions_follow: bool
     residual: float
+    kicked_residual: float
+    kicked_limit: int
     limit: int
 
 
@@ -87,6 +90,8 @@ CONDITIONED = Method(
     stiffer=1e3,
     tensions_follow=True,
     residual=0.1 * RESIDUAL_TOLERANCE,
+    kicked_residual=1e-3 * RESIDUAL_TOLERANCE,
+    kicked_limit=300,
     limit=20_000,
 )
 
@@ -132,7 +137,8 @@ def search(
     limit = method.limit if max_iterations is None else max_iterations
     if tensions is None:
         tensions = np.zeros(len(start.loop))
-    best = _descend(problem, start, tensions, load, limit, observe, method)
+    aim = method.residual
+    best = _descend(problem, start, tensions, load, limit, observe, method, aim)
     spent = best.iterations
     confirmed = False
     rng = np.random.default_rng(0)
@@ -142,12 +148,27 @@ def search(
             break
         shape = best.shape
         kicked = shape.moved(shape.x + smooth_kick(shape.x_loop, shape.x, rng, axis))
-        left = limit - spent
-        again = _descend(problem, kicked, best.tensions, load, left, observe, method)
-        spent += again.iterations
-        confirmed = again.converged and (
-            abs(again.energy - best.energy) <= _SAME_ENERGY * abs(best.energy)
+        again = _descend(
+            problem,
+            kicked,
+            best.tensions,
+            load,
+            min(limit - spent, method.kicked_limit),
+            observe,
+            method,
+            method.kicked_residual,
         )
+        spent += again.iterations
+        gained = (best.energy - again.energy) / abs(best.energy)
+        confirmed = abs(gained) <= _SAME_ENERGY
+        if confirmed and not again.converged:
+            break
+        if not again.converged:
+            left = limit - spent
+            again = _descend(
+                problem, again.shape, again.tensions, load, left, observe, method, aim
+            )
+            spent += again.iterations
         best = again if again.energy < best.energy or not again.converged else best
         if confirmed:
             break
@@ -165,6 +186,7 @@ def _descend(
     budget: int,
     observe: Callable[[FloatArray], None],
     method: Method,
+    aim: float,
 ) -> Equilibrium:
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
     first, stretched, firmer = _first_penalty(problem, load), np.inf, 1.0
@@ -190,10 +212,10 @@ def _descend(
             iterate = replace(
                 iterate,
                 tensions=tension,
-                tolerance=max(_TIGHTENING * iterate.tolerance, _ROOM * method.residual),
+                tolerance=max(_TIGHTENING * iterate.tolerance, _ROOM * aim),
             )
             before, stretched = stretched, problem.length_error(shape)
-            if residual <= method.residual and stretched <= LENGTH_TOLERANCE:
+            if residual <= aim and stretched <= LENGTH_TOLERANCE:
                 at_rest = _film_at_rest(problem, shape)
                 if at_rest:
                     return _record(problem, iterate, load, Status.CONVERGED)

@@ -18,6 +18,8 @@ PLAIN = Method(
     stiffer=1.0,
     tensions_follow=False,
     residual=RESIDUAL_TOLERANCE,
+    kicked_residual=RESIDUAL_TOLERANCE,
+    kicked_limit=1_000_000,
     limit=1_000_000,
 )
 

@@ -45,6 +45,9 @@ _ROOM = 0.3
 # Kicks before the load is given up as lying at a transition.
 _KICKS = 5
 _SAME_ENERGY = 1e-8
+# Energy, alpha / L, that is nothing to gain from one base point to the next: a circle has
+# 4 pi^2 of it.
+_NOTHING = 1e-11
 # Forces inside a film at rest over the largest of its forces on the loop.
 _FILM_BALANCE = 1e-3
 # Relative length error up to which a loop is near enough to be held as it moves.
@@ -98,12 +101,16 @@ CONDITIONED = Method(
 
 @dataclass(frozen=True)
 class _Iterate:
-    """A shape, its tensions (n_b,), the tolerance in force, iterations so far."""
+    """A shape, its tensions (n_b,), the tolerance in force, iterations so far.
+
+    And what the energy has changed by since the last base point.
+    """
 
     shape: Shape
     tensions: FloatArray
     tolerance: float
     iterations: int
+    change: float = -np.inf
 
 
 def minimise(
@@ -148,23 +155,15 @@ def search(
             break
         shape = best.shape
         kicked = shape.moved(shape.x + smooth_kick(shape.x_loop, shape.x, rng, axis))
-        again = _descend(
-            problem,
-            kicked,
-            best.tensions,
-            load,
-            min(limit - spent, method.kicked_limit),
-            observe,
-            method,
-            method.kicked_residual,
-        )
+        left, aim = min(limit - spent, method.kicked_limit), method.kicked_residual
+        again = _descend(problem, kicked, best.tensions, load, left, observe, method, aim)
         spent += again.iterations
         gained = (best.energy - again.energy) / abs(best.energy)
         confirmed = abs(gained) <= _SAME_ENERGY
         if confirmed and not again.converged:
             break
         if not again.converged:
-            left = limit - spent
+            left, aim = limit - spent, method.residual
             again = _descend(
                 problem, again.shape, again.tensions, load, left, observe, method, aim
             )
@@ -208,6 +207,10 @@ def _descend(
         residual = float(np.abs(forces).max()) / scale
         if not np.isfinite(residual):
             return _record(problem, iterate, load, Status.NOT_FINITE)
+        if residual <= method.residual and iterate.change > -_NOTHING:
+            found = _given_up(problem, iterate, load, Status.STALLED)
+            if found.converged:
+                return found
         if residual <= iterate.tolerance:
             iterate = replace(
                 iterate,
@@ -309,10 +312,10 @@ def _minimise(
     gradient = np.empty_like(base)
     goal = iterate.tolerance * scale
     last = reached = np.zeros(variables.size)
-    moved = np.zeros_like(base)
+    moved, value, change = np.zeros_like(base), 0.0, 0.0
 
     def difference(y: FloatArray) -> tuple[float, FloatArray]:
-        nonlocal last, moved
+        nonlocal last, moved, value
         last = y.copy()
         moved = variables.displacement(y)
         value = kernels.augmented_difference(
@@ -331,12 +334,12 @@ def _minimise(
         return value, variables.derivative(y, gradient)
 
     def keep(y: FloatArray) -> None:
-        nonlocal reached
+        nonlocal reached, change
         if not np.array_equal(last, y):
             difference(y)
         if not space.holds(moved):
             raise StopIteration
-        reached = last
+        reached, change = last, value
         # A little less: else rounding might find nothing to do here, and no end there.
         if float(np.abs(space.collect(gradient)).max()) <= 0.99 * goal:
             raise StopIteration
@@ -356,6 +359,7 @@ def _minimise(
         iterate,
         shape=space.reached(variables.displacement(reached)),
         iterations=iterate.iterations + max(int(found.nit), 1),
+        change=change,
     )
 
 

@@ -143,7 +143,6 @@ class _Everywhere:
     def reached(self, moved: FloatArray) -> Shape:
         return self.shape.moved(self.shape.x + moved)
 
-
     @property
     def stiffness(self) -> FloatArray:
         return 2 * self.load * self.film.of_loop(self.shape).condensed.stiffness
@@ -232,7 +231,6 @@ class _AlongNormals(_Sliding):
 
     def reached(self, moved: FloatArray) -> Shape:
         return self.shape.moved(self.shape.x + moved)
-
 
     @property
     def stiffness(self) -> FloatArray:

@@ -228,9 +228,7 @@ def test_kick_is_transverse_smooth_and_a_thousandth_of_the_length(oval: Disk) ->
     assert np.abs(again - kick).max() > 1e-4
 
 
-@pytest.mark.parametrize(
-    "name", ["cg", pytest.param("cg-plain", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("name", ["cg", pytest.param("cg-plain", marks=pytest.mark.slow)])
 def test_loop_that_its_mesh_cannot_carry_is_given_up_soon(name: str) -> None:
     """Newton's minimum turns by over 30 degrees, and so does the way there."""
     problem = Problem(shapes.mesh_of(*shapes.disk_points(3)))
@@ -262,8 +260,14 @@ def test_iterations_grow_no_faster_than_the_root_of_the_number_of_vertices(
 @pytest.mark.parametrize(
     ("disk", "load"),
     [
-        *(("elongated", load) for load in (1.0, 300.0, 720.0, 1000.0, 1500.0, 2200.0, 3000.0)),
-        *(("hexagon", load) for load in (1.0, 800.0, 860.0, 900.0, 1100.0, 1500.0, 2000.0, 3000.0)),
+        *(
+            ("elongated", load)
+            for load in (1.0, 300.0, 720.0, 1000.0, 1500.0, 2200.0, 3000.0)
+        ),
+        *(
+            ("hexagon", load)
+            for load in (1.0, 800.0, 860.0, 900.0, 1100.0, 1500.0, 2000.0, 3000.0)
+        ),
     ],
 )
 def test_on_the_papers_meshes_it_finds_a_minimum_of_newtons_to_1e_8(
@@ -282,9 +286,7 @@ def test_on_the_papers_meshes_it_finds_a_minimum_of_newtons_to_1e_8(
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["cg", "cg-plain"])
 @pytest.mark.parametrize("load", [300.0, 720.0, 1000.0])
-def test_solvers_agree_on_the_papers_mesh(
-    elongated: Disk, load: float, name: str
-) -> None:
+def test_solvers_agree_on_the_papers_mesh(elongated: Disk, load: float, name: str) -> None:
     start = shapes.crumpled(elongated, 1e-3)
     cg, exact = (solve(solver, elongated, start, load) for solver in (name, "newton"))
     assert cg.status is Status.CONVERGED

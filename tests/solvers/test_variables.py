@@ -95,9 +95,7 @@ def test_variables_change_lengths_as_to_first_order_and_then_to_fourth(
     loop, x = problem.loop, shape.x_loop
     # Smooth moves of the loop: those that cost most are out of the expansion's reach.
     y = straight.T @ np.random.default_rng(2).standard_normal(len(straight))
-    first = Lengths(loop).jacobian(x) @ (
-        (straight @ y).reshape(-1, 3)[shape.loop].ravel()
-    )
+    first = Lengths(loop).jacobian(x) @ ((straight @ y).reshape(-1, 3)[shape.loop].ravel())
     size = 0.05 / np.abs(straight @ y).max()
 
     def beyond(part: float) -> float:

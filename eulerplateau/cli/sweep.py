@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     help="The run folder; for several runs, the folder that holds theirs. "
     "Default: beside RUN.toml, with its name and what is set.",
 )
-@click.option("--solver", help="newton or cg; short for --set solver.name=NAME.")
+@click.option("--solver", help="newton, cg or cg-plain; short for --set solver.name=NAME.")
 @click.option(
     "--set",
     "settings",

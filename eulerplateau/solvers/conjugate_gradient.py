@@ -1,89 +1,36 @@
 """The paper's method: scipy's conjugate gradients over loop and film together.
 
-The edge lengths are kept by an augmented Lagrangian,
+The edge lengths are kept by an augmented Lagrangian (augmented_lagrangian.py). At every base
+point variables are chosen anew in which the problem is well conditioned (variables.py);
+plain_gradient.py does without. What the unknowns are depends on the film (trial_space.py).
 
-    A(x) = E(x) + sum_v [lambda_v c_v + mu c_v^2 / (2 s_v)],   lambda_v += mu c_v / s_v.
-
-Conjugate gradients stall when the line search compares energies that differ by rounding
-only. So the unknown is the displacement u from a base point, A is evaluated as the
-difference A(x0 + u) - A(x0), and the base moves along every few thousand iterations.
 A saddle balances its forces too: a result is accepted only if a small kick and a second
-solve come back to the same energy. What the unknowns are depends on the film
-(trial_space.py); a soap film's are chosen anew at every base point.
+solve come back to the same energy. A film that turns against its mesh leaves a saddle
+slowly, and the second solve has to look closer. Where turning costs nothing that could be
+measured it would walk on for ever: what it has not gained in a few hundred iterations is
+not there to be gained.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import LinAlgError
-from scipy.optimize import minimize
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import Loop, kernels, largest_turning
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers.equilibrium import (
-    LENGTH_TOLERANCE,
-    RESIDUAL_TOLERANCE,
-    RESOLVED_TURNING,
-    Equilibrium,
-    Status,
-)
+from eulerplateau.solvers.augmented_lagrangian import Method, descend
+from eulerplateau.solvers.equilibrium import RESIDUAL_TOLERANCE, Equilibrium, Status
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.start import smooth_kick
-from eulerplateau.solvers.trial_space import TrialSpace, kick_axis, trial_space
-from eulerplateau.solvers.variables import Variables, conditioned
+from eulerplateau.solvers.trial_space import kick_axis
+from eulerplateau.solvers.variables import conditioned
 
-# A tenfold tighter residual for every update of the tensions, down to a part of the one
-# asked for: that leaves the tensions' last update room.
-_FIRST_TOLERANCE = 1e-2
-_TIGHTENING = 0.1
-_ROOM = 0.3
 # Kicks before the load is given up as lying at a transition.
 _KICKS = 5
 _SAME_ENERGY = 1e-8
-# Energy, alpha / L, that is nothing to gain from one base point to the next: a circle has
-# 4 pi^2 of it.
-_NOTHING = 1e-11
-# Forces inside a film at rest over the largest of its forces on the loop.
-_FILM_BALANCE = 1e-3
-# Relative length error up to which a loop is near enough to be held as it moves.
-_NEAR = 0.1
-# Relative length error above which the penalty may have to grow, and the least penalty.
-_STRETCHED = 1e-2
-_STIFFER_THAN_BENDING = 1000.0
-# Iterations, in those from one base point, on loops that turn farther than their mesh can
-# carry, before such a loop is taken for where the way leads.
-_PATIENCE = 20
-
-
-@dataclass(frozen=True)
-class Method:
-    """How conjugate gradients are used.
-
-    Attributes
-    ----------
-    variables : what they search in
-    iterations : from one base point
-    stiffer : the penalty of the lengths, of what the paper's variables bear
-    tensions_follow : whether tensions are updated at every base point, or at balance only
-    residual : what they aim at
-    kicked_residual, kicked_limit : what they aim at after a kick, in how many iterations
-    limit : iterations after which a load is given up
-    """
-
-    variables: Callable[[TrialSpace, Loop, FloatArray, float], Variables]
-    iterations: int
-    stiffer: float
-    tensions_follow: bool
-    residual: float
-    kicked_residual: float
-    kicked_limit: int
-    limit: int
-
 
 # Where a stiff edge costs no iterations the penalty is as large as rounding lets it be, and
 # a film that turns takes its tensions along. Tensions that stay behind draw it to and fro.
@@ -97,20 +44,6 @@ CONDITIONED = Method(
     kicked_limit=300,
     limit=20_000,
 )
-
-
-@dataclass(frozen=True)
-class _Iterate:
-    """A shape, its tensions (n_b,), the tolerance in force, iterations so far.
-
-    And what the energy has changed by since the last base point.
-    """
-
-    shape: Shape
-    tensions: FloatArray
-    tolerance: float
-    iterations: int
-    change: float = -np.inf
 
 
 def minimise(
@@ -145,7 +78,7 @@ def search(
     if tensions is None:
         tensions = np.zeros(len(start.loop))
     aim = method.residual
-    best = _descend(problem, start, tensions, load, limit, observe, method, aim)
+    best = descend(problem, start, tensions, load, limit, observe, method, aim)
     spent = best.iterations
     confirmed = False
     rng = np.random.default_rng(0)
@@ -156,7 +89,7 @@ def search(
         shape = best.shape
         kicked = shape.moved(shape.x + smooth_kick(shape.x_loop, shape.x, rng, axis))
         left, aim = min(limit - spent, method.kicked_limit), method.kicked_residual
-        again = _descend(problem, kicked, best.tensions, load, left, observe, method, aim)
+        again = descend(problem, kicked, best.tensions, load, left, observe, method, aim)
         spent += again.iterations
         gained = (best.energy - again.energy) / abs(best.energy)
         confirmed = abs(gained) <= _SAME_ENERGY
@@ -164,7 +97,7 @@ def search(
             break
         if not again.converged:
             left, aim = limit - spent, method.residual
-            again = _descend(
+            again = descend(
                 problem, again.shape, again.tensions, load, left, observe, method, aim
             )
             spent += again.iterations
@@ -175,209 +108,3 @@ def search(
         best = replace(best, status=Status.SADDLE)
     seconds = time.perf_counter() - started
     return problem.classified(replace(best, iterations=spent, seconds=seconds))
-
-
-def _descend(
-    problem: Problem,
-    shape: Shape,
-    tensions: FloatArray,
-    load: float,
-    budget: int,
-    observe: Callable[[FloatArray], None],
-    method: Method,
-    aim: float,
-) -> Equilibrium:
-    """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
-    first, stretched, firmer = _first_penalty(problem, load), np.inf, 1.0
-    iterate, at_rest = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True
-    carried = 0
-    while True:
-        try:
-            shape = iterate.shape if at_rest else _rested(problem, iterate.shape)
-            shape = problem.film.prepared(shape)
-            iterate, at_rest = replace(iterate, shape=shape), True
-            near = problem.length_error(shape) <= _NEAR
-            penalty = firmer * first * (method.stiffer if near else 1.0)
-            forces, tension, scale = _forces(problem, iterate, load, penalty)
-        except LinAlgError:  # no film, or no loop
-            return _record(problem, iterate, load, Status.STALLED)
-        if scale == 0.0 or problem.film.pinched(shape, problem.loop):
-            # A point; a soap film without width.
-            return _record(problem, iterate, load, Status.STALLED)
-        residual = float(np.abs(forces).max()) / scale
-        if not np.isfinite(residual):
-            return _record(problem, iterate, load, Status.NOT_FINITE)
-        if residual <= method.residual and iterate.change > -_NOTHING:
-            found = _given_up(problem, iterate, load, Status.STALLED)
-            if found.converged:
-                return found
-        if residual <= iterate.tolerance:
-            iterate = replace(
-                iterate,
-                tensions=tension,
-                tolerance=max(_TIGHTENING * iterate.tolerance, _ROOM * aim),
-            )
-            before, stretched = stretched, problem.length_error(shape)
-            if residual <= aim and stretched <= LENGTH_TOLERANCE:
-                at_rest = _film_at_rest(problem, shape)
-                if at_rest:
-                    return _record(problem, iterate, load, Status.CONVERGED)
-                continue
-            # Tensions that chase a loop to and fro get nowhere: hold it faster.
-            if stretched > max(_STRETCHED, 0.5 * before):
-                penalty, firmer = 4 * penalty, 4 * firmer
-            forces, tension, scale = _forces(problem, iterate, load, penalty)
-        if iterate.iterations >= budget:
-            return _given_up(problem, iterate, load, Status.ITERATION_LIMIT)
-        after = _minimise(problem, method, iterate, load, penalty, forces, tension, scale)
-        if after is None:
-            return _given_up(problem, iterate, load, Status.STALLED)
-        if not np.isfinite(after.shape.x).all():
-            return _record(problem, iterate, load, Status.NOT_FINITE)
-        iterate = after
-        if method.tensions_follow and near:
-            iterate = replace(iterate, tensions=_tension(problem, iterate, penalty))
-        observe(iterate.shape.x_loop)
-        if largest_turning(iterate.shape.x_loop) <= RESOLVED_TURNING:
-            carried = iterate.iterations
-        elif iterate.iterations - carried >= _PATIENCE * method.iterations:
-            return _given_up(problem, iterate, load, Status.UNRESOLVED)
-
-
-def _rested(problem: Problem, shape: Shape) -> Shape:
-    """Return the film at rest on a shape's loop."""
-    film = problem.film.of_loop(shape)
-    return film.shape(film.project(shape.x_loop))
-
-
-def _first_penalty(problem: Problem, load: float) -> float:
-    """Return the stretching stiffness mu, alpha / L^2.
-
-    Its stiffest mode is as stiff as the loop's in bending, 4 mu / s = 16 / s^3: softer lets
-    lengths drift, stiffer slows the iteration down. But film and bending are to be weak
-    against it, load and 4 pi^2 against mu / 8: else they would draw the loop to a point.
-    """
-    even = 4.0 / float(np.mean(problem.loop.rest_lengths)) ** 2
-    return max(even, 10.0 * load, _STIFFER_THAN_BENDING)
-
-
-def _film_at_rest(problem: Problem, shape: Shape) -> bool:
-    """Whether the film balances by its own measure, however little it pulls.
-
-    The residual does not feel a film a million times softer than the loop.
-    """
-    film = np.abs(problem.film.forces(shape))
-    inside = film[problem.disk.interior].max(initial=0.0)
-    return bool(inside <= _FILM_BALANCE * film.max())
-
-
-def _forces(
-    problem: Problem, iterate: _Iterate, load: float, penalty: float
-) -> tuple[FloatArray, FloatArray, float]:
-    """Return grad A (n_v, 3), the tensions lambda + mu c / s (n_b,), the largest force."""
-    shape = iterate.shape
-    tension = _tension(problem, iterate, penalty)
-    parts = (
-        problem.bending_energy(shape)[1],
-        load * problem.film.forces(shape),
-        problem.tension_force(shape, tension),
-    )
-    scale = max(float(np.abs(part).max()) for part in parts)
-    total = problem.without_sliding(shape, parts[0] + parts[1] + parts[2])
-    return total, tension, scale
-
-
-def _tension(problem: Problem, iterate: _Iterate, penalty: float) -> FloatArray:
-    """Return the tensions lambda + mu c / s (n_b,)."""
-    excess = problem.loop.constraint(iterate.shape.x_loop)
-    return iterate.tensions + penalty * excess / problem.loop.rest_lengths
-
-
-def _minimise(
-    problem: Problem,
-    method: Method,
-    iterate: _Iterate,
-    load: float,
-    penalty: float,
-    forces: FloatArray,
-    tension: FloatArray,
-    scale: float,
-) -> _Iterate | None:
-    """Run scipy's conjugate gradients from the iterate as base point; None if stuck."""
-    shape = iterate.shape
-    space = trial_space(problem, shape, load)
-    variables = method.variables(space, problem.loop, shape.x_loop, penalty)
-    springs, weights = space.springs
-    base = space.lift(forces)
-    gradient = np.empty_like(base)
-    goal = iterate.tolerance * scale
-    last = reached = np.zeros(variables.size)
-    moved, value, change = np.zeros_like(base), 0.0, 0.0
-
-    def difference(y: FloatArray) -> tuple[float, FloatArray]:
-        nonlocal last, moved, value
-        last = y.copy()
-        moved = variables.displacement(y)
-        value = kernels.augmented_difference(
-            moved,
-            shape.x,
-            base,
-            springs,
-            weights,
-            shape.loop,
-            problem.loop.rest_lengths,
-            tension,
-            penalty,
-            gradient,
-        )
-        value += space.beyond_linear(moved, gradient)
-        return value, variables.derivative(y, gradient)
-
-    def keep(y: FloatArray) -> None:
-        nonlocal reached, change
-        if not np.array_equal(last, y):
-            difference(y)
-        if not space.holds(moved):
-            raise StopIteration
-        reached, change = last, value
-        # A little less: else rounding might find nothing to do here, and no end there.
-        if float(np.abs(space.collect(gradient)).max()) <= 0.99 * goal:
-            raise StopIteration
-
-    found = minimize(
-        difference,
-        reached,
-        jac=True,
-        method="CG",
-        callback=keep,
-        options={"gtol": 0.0, "maxiter": method.iterations},
-    )
-    # At rest already: the next tolerance will tell. Else in other unknowns than forces are.
-    if not reached.any() and not float(np.abs(forces).max()) <= goal:
-        return None
-    return replace(
-        iterate,
-        shape=space.reached(variables.displacement(reached)),
-        iterations=iterate.iterations + max(int(found.nit), 1),
-        change=change,
-    )
-
-
-def _given_up(
-    problem: Problem, iterate: _Iterate, load: float, status: Status
-) -> Equilibrium:
-    """Record where a search ended that found no more to gain, or no time left for it."""
-    found = _record(problem, iterate, load, status)
-    accepted = (
-        found.residual <= RESIDUAL_TOLERANCE
-        and found.length_error <= LENGTH_TOLERANCE
-        and _film_at_rest(problem, iterate.shape)
-    )
-    return replace(found, status=Status.CONVERGED) if accepted else found
-
-
-def _record(
-    problem: Problem, iterate: _Iterate, load: float, status: Status
-) -> Equilibrium:
-    found = problem.equilibrium(iterate.shape, iterate.tensions, load, status)
-    return replace(found, iterations=iterate.iterations)

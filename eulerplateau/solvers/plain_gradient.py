@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers.conjugate_gradient import Method, search
+from eulerplateau.solvers.augmented_lagrangian import Method
+from eulerplateau.solvers.conjugate_gradient import search
 from eulerplateau.solvers.equilibrium import RESIDUAL_TOLERANCE, Equilibrium
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.variables import plain

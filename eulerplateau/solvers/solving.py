@@ -24,7 +24,7 @@ Start = Shape | Equilibrium | ArrayLike
 
 
 class Minimise(Protocol):
-    """A solver: newton.minimise or conjugate_gradient.minimise."""
+    """A solver: `minimise` of newton, conjugate_gradient or plain_gradient."""
 
     def __call__(
         self,
@@ -62,9 +62,10 @@ def solve(
         mesh lies. An equilibrium brings its tensions along.
     tensions : (n_b,) float
         Those that belong to the start, where they are known: they save time.
-    solver : "newton" or "cg"
+    solver : "newton", "cg", or "cg-plain" (the paper's method as it is)
     max_iterations : int
-        Where to give up; by default 500 of Newton's, a million of conjugate gradients'.
+        Where to give up; by default 500 of newton's, 20,000 of cg's, a million of
+        cg-plain's.
     observe : function of the loop (n_b, 3)
         Shown it after every step.
 

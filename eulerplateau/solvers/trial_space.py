@@ -15,13 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film import (
-    AreaFilm,
-    Film,
-    LocalFilm,
-    PlaneFilm,
-    QuadraticFilm,
-)
+from eulerplateau.film import AreaFilm, Film, LocalFilm, PlaneFilm, QuadraticFilm
 from eulerplateau.loop import Loop, remove_sliding
 from eulerplateau.loop.kernels import area_beyond_linear
 from eulerplateau.mesh import Shape, polygon_gradient
@@ -291,8 +285,7 @@ class _InPlane(_Sliding):
 
     @property
     def stiffness(self) -> FloatArray:
-        n = len(self.shape.loop)
-        return np.zeros((n, n))
+        return np.zeros(2 * (len(self.shape.loop),))
 
     def varied(self, moves: FloatArray) -> FloatArray:
         in_plane = np.einsum("vdk,ad,ae->vek", moves, self.film.axes, self.film.axes)

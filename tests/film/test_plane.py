@@ -20,7 +20,7 @@ from eulerplateau.mesh.polygon import (
     polygon_area,
     polygon_gradient,
 )
-from eulerplateau.solvers import SOLVERS, Problem, Status, solve, tangent_model
+from eulerplateau.solvers import Problem, Status, solve, tangent_model
 from eulerplateau.solvers.in_plane.newton import settle_in_plane
 from tests.helpers import shapes, twins
 from tests.helpers.equilibria import distance_up_to_motion, energy_in_plane
@@ -170,7 +170,7 @@ def test_three_lobed_saddle_is_reached_from_a_rough_guess() -> None:
     assert distance_up_to_motion(found.x, exact) < 0.002
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", ["newton", "cg"])
 def test_start_that_lies_face_down_is_turned_over(solver: str) -> None:
     """Its loop runs clockwise, round a negative area that more tension would enlarge."""
     points, triangles = shapes.disk_points(4, jitter=0.2)

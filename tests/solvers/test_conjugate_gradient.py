@@ -167,7 +167,7 @@ def test_kicks_that_are_not_confirmed_give_a_saddle(
     energies = [40.0, 39.0, 38.0, 37.0, 36.0, 36.0 if confirmed else 35.0]
     minimum = solving.solve(coarse_problem, 300.0)
     left = iter([replace(minimum, energy=e, iterations=10) for e in energies])
-    monkeypatch.setattr(conjugate_gradient, "_descend", lambda *arguments: next(left))
+    monkeypatch.setattr(conjugate_gradient, "descend", lambda *arguments: next(left))
     found = solving.solve(coarse_problem, 300.0, solver="cg")
     assert found.status is (Status.CONVERGED if confirmed else Status.SADDLE)
     assert (found.energy, found.iterations) == (energies[-1], 60)

@@ -1,4 +1,4 @@
-"""The variables of conjugate gradients: what they are to the shape, the energy and its lengths."""
+"""The variables of conjugate gradients: what they are to shape, energy and lengths."""
 
 from __future__ import annotations
 

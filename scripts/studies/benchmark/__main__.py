@@ -26,7 +26,7 @@ SIZES = (474, 2000, 7500, 50_000, 200_000)
 COLD, WARM = 700.0, 710.0
 # A solver that has not finished the cold task after this long is not run any further.
 SECONDS = 300.0
-REPEATS = {"cg": 3, "newton": 5}
+REPEATS = {"cg-plain": 3, "cg": 5, "newton": 5}
 
 Result = TypeVar("Result")
 

@@ -41,7 +41,7 @@ _NOTHING = 1e-11
 # Forces inside a film at rest over the largest of its forces on the loop.
 _FILM_BALANCE = 1e-3
 # Relative length error up to which a loop is near enough to be held as it moves.
-_NEAR = 0.1
+_NEAR = 1.0
 # Relative length error above which the penalty may have to grow, and the least penalty.
 _STRETCHED = 1e-2
 _STIFFER_THAN_BENDING = 1000.0
@@ -79,7 +79,8 @@ class Method:
 class _Iterate:
     """A shape, its tensions (n_b,), the tolerance in force, iterations so far.
 
-    And what the energy has changed by since the last base point.
+    And what the energy has changed by since the last base point, where it was left for
+    another reason than being at the tolerance.
     """
 
     shape: Shape
@@ -254,6 +255,7 @@ def _minimise(
         reached, change = last, value
         # A little less: else rounding might find nothing to do here, and no end there.
         if float(np.abs(space.collect(gradient)).max()) <= 0.99 * goal:
+            change = -np.inf
             raise StopIteration
 
     found = minimize(

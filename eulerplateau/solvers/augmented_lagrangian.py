@@ -38,6 +38,8 @@ _ROOM = 0.3
 # Energy, alpha / L, that is nothing to gain from one base point to the next: a circle has
 # 4 pi^2 of it.
 _NOTHING = 1e-11
+# Base points in a row at their tolerance with nothing gained, after which it is over.
+_IDLE = 5
 # Forces inside a film at rest over the largest of its forces on the loop.
 _FILM_BALANCE = 1e-3
 # Relative length error up to which a loop is near enough to be held as it moves.
@@ -79,15 +81,15 @@ class Method:
 class _Iterate:
     """A shape, its tensions (n_b,), the tolerance in force, iterations so far.
 
-    And what the energy has changed by since the last base point, where it was left for
-    another reason than being at the tolerance.
+    `idle` is _IDLE or more where the last base points have gained nothing: one that was left
+    for another reason than being at the tolerance counts for all.
     """
 
     shape: Shape
     tensions: FloatArray
     tolerance: float
     iterations: int
-    change: float = -np.inf
+    idle: int = 0
 
 
 def descend(
@@ -120,7 +122,7 @@ def descend(
         residual = float(np.abs(forces).max()) / scale
         if not np.isfinite(residual):
             return _record(problem, iterate, load, Status.NOT_FINITE)
-        if residual <= method.residual and iterate.change > -_NOTHING:
+        if residual <= method.residual and iterate.idle >= _IDLE:
             found = _given_up(problem, iterate, load, Status.STALLED)
             if found.converged:
                 return found
@@ -226,6 +228,7 @@ def _minimise(
     goal = iterate.tolerance * scale
     last = reached = np.zeros(variables.size)
     moved, value, change = np.zeros_like(base), 0.0, 0.0
+    idle = _IDLE
 
     def difference(y: FloatArray) -> tuple[float, FloatArray]:
         nonlocal last, moved, value
@@ -247,7 +250,7 @@ def _minimise(
         return value, variables.derivative(y, gradient)
 
     def keep(y: FloatArray) -> None:
-        nonlocal reached, change
+        nonlocal reached, change, idle
         if not np.array_equal(last, y):
             difference(y)
         if not space.holds(moved):
@@ -255,7 +258,7 @@ def _minimise(
         reached, change = last, value
         # A little less: else rounding might find nothing to do here, and no end there.
         if float(np.abs(space.collect(gradient)).max()) <= 0.99 * goal:
-            change = -np.inf
+            idle = 1
             raise StopIteration
 
     found = minimize(
@@ -273,7 +276,7 @@ def _minimise(
         iterate,
         shape=space.reached(variables.displacement(reached)),
         iterations=iterate.iterations + max(int(found.nit), 1),
-        change=change,
+        idle=iterate.idle + idle if change > -_NOTHING else 0,
     )
 
 

@@ -7,8 +7,8 @@
     descent.py    downhill to a minimum, on trust_region.py; primal_dual.py: the fast end
     second_variation.py  Hessian and spectrum at one loop, by tangent_coordinates.py;
                   models.py, quadratic_models.py: of which part, large_loops/ for large ones
-    conjugate_gradient.py  the paper's method, by augmented_lagrangian.py, in the unknowns of
-                  trial_space.py and variables.py; plain_gradient.py: as the paper has it
+    conjugate_gradient.py  the paper's method, by augmented_lagrangian.py, in the unknowns
+                  of trial_space.py and variables.py; plain_gradient.py: as the paper has it
     threads.py    one BLAS thread while something is solved
 
 A solver sees an energy of loops with its constraint, no mesh and no file. Which film it

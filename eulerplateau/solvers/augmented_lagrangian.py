@@ -81,8 +81,8 @@ class Method:
 class _Iterate:
     """A shape, its tensions (n_b,), the tolerance in force, iterations so far.
 
-    `idle` is _IDLE or more where the last base points have gained nothing: one that was left
-    for another reason than being at the tolerance counts for all.
+    `idle` is _IDLE or more where the last base points have gained nothing: one that was
+    left for another reason than being at the tolerance counts for all.
     """
 
     shape: Shape

@@ -1,8 +1,9 @@
 """The paper's method: scipy's conjugate gradients over loop and film together.
 
 The edge lengths are kept by an augmented Lagrangian (augmented_lagrangian.py). At every
-base point variables are chosen anew in which the problem is well conditioned (variables.py);
-plain_gradient.py does without. What the unknowns are depends on the film (trial_space.py).
+base point variables are chosen anew, in which the problem is well conditioned
+(variables.py); plain_gradient.py does without. What the unknowns are depends on the film
+(trial_space.py).
 
 A saddle balances its forces too: a result is accepted only if a small kick and a second
 solve come back to the same energy. A film that turns against its mesh leaves a saddle

@@ -17,6 +17,7 @@ from scipy.linalg import LinAlgError
 from scipy.optimize import minimize
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.interruption import heed
 from eulerplateau.loop import Loop, kernels, largest_turning
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import (
@@ -35,8 +36,7 @@ from eulerplateau.solvers.variables import Variables
 _FIRST_TOLERANCE = 1e-2
 _TIGHTENING = 0.1
 _ROOM = 0.3
-# Energy, alpha / L, that is nothing to gain from one base point to the next: a circle has
-# 4 pi^2 of it.
+# Energy, alpha / L, that is nothing to gain between base points: a circle has 4 pi^2.
 _NOTHING = 1e-11
 # Base points in a row at their tolerance with nothing gained, after which it is over.
 _IDLE = 5
@@ -104,9 +104,9 @@ def descend(
 ) -> Equilibrium:
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
     first, stretched, firmer = _first_penalty(problem, load), np.inf, 1.0
-    iterate, at_rest = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True
-    carried = 0
+    iterate, at_rest, carried = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True, 0
     while True:
+        heed()
         try:
             shape = iterate.shape if at_rest else _rested(problem, iterate.shape)
             shape = problem.film.prepared(shape)

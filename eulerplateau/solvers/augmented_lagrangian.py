@@ -39,7 +39,7 @@ _ROOM = 0.3
 # Energy, alpha / L, that is nothing to gain between base points: a circle has 4 pi^2.
 _NOTHING = 1e-11
 # Base points in a row at their tolerance with nothing gained, after which it is over.
-_IDLE = 5
+_IDLE = 10
 # Forces inside a film at rest over the largest of its forces on the loop.
 _FILM_BALANCE = 1e-3
 # Relative length error up to which a loop is near enough to be held as it moves.

@@ -41,7 +41,7 @@ CONDITIONED = Method(
     stiffer=1e3,
     tensions_follow=True,
     residual=0.1 * RESIDUAL_TOLERANCE,
-    kicked_residual=1e-3 * RESIDUAL_TOLERANCE,
+    kicked_residual=1e-4 * RESIDUAL_TOLERANCE,
     kicked_limit=300,
     limit=20_000,
 )

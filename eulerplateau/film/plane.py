@@ -19,7 +19,7 @@ from eulerplateau.film.area import AreaFilm
 from eulerplateau.film.folds import is_folded, laid_anew
 from eulerplateau.film.harmonic import follower
 from eulerplateau.film.load import TENSION, Load
-from eulerplateau.film.plane_mesh import carry_in_plane
+from eulerplateau.film.plane_mesh import carry_in_plane, is_sparse
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
 from eulerplateau.mesh import Disk, Shape, polygon_area, polygon_gradient
 
@@ -97,8 +97,12 @@ class PlaneFilm:
         return inside_out or loop.strands_meet(shape.x_loop)
 
     def folded(self, shape: Shape) -> bool:
-        """Return whether the mesh shows another area than its polygon has."""
-        return self.soap.folded(shape)
+        """Return whether the mesh shows another area than its polygon has.
+
+        A mesh with hardly a vertex inside cannot but fold; it is only looked at.
+        """
+        few = is_sparse(self.soap.tiling(shape.triangles))
+        return not few and self.soap.folded(shape)
 
 
 @dataclass(frozen=True)

@@ -38,8 +38,7 @@ def carry_in_plane(
     axes : (2, 3) float, orthonormal
     """
     start = np.ascontiguousarray(x @ axes.T)
-    enough = len(tiling.interior) >= _FEW * len(tiling.loop)
-    mendable = enough and not strands_meet(polygon)
+    mendable = not is_sparse(tiling) and not strands_meet(polygon)
     best, angle = start, -np.inf
     for steps in _STEPS if mendable else _STEPS[:1]:
         flat = _followed(tiling, start, polygon, steps)
@@ -54,6 +53,11 @@ def carry_in_plane(
     if mendable and angle < LIMITS.thin:
         return mend_triangles(tiling, moved, _REPAIRED * LIMITS.thin)
     return tiling, moved
+
+
+def is_sparse(tiling: Tiling) -> bool:
+    """Return whether a mesh has too few vertices inside for good triangles."""
+    return len(tiling.interior) < _FEW * len(tiling.loop)
 
 
 def _followed(

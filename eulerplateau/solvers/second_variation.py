@@ -100,7 +100,7 @@ def tangent_model(energy: LoopEnergy, x: FloatArray) -> TangentModel:
     """Build the model at loop positions x (n, d) that keep the energy's constraint."""
     forces = energy.forces(x)
     total = sum(forces[1:], start=forces[0])
-    coordinates, tensions, unbalanced = _tangent_space(energy, x, total)
+    coordinates, tensions, gradient, unbalanced = _tangent_space(energy, x, total)
     forces.append(energy.constraint.force(x, tensions))
     largest = max(float(np.abs(force).max()) for force in forces)
     return TangentModel(
@@ -110,18 +110,18 @@ def tangent_model(energy: LoopEnergy, x: FloatArray) -> TangentModel:
         residual=float(np.abs(unbalanced).max()) / largest,
         rounding=energy.rounding * float(np.abs(x).max()) / largest,
         coordinates=coordinates,
-        gradient=coordinates.slope(unbalanced.reshape(-1, 1))[:, 0],
+        gradient=gradient,
         hessian=coordinates.hessian(energy, x, tensions),
     )
 
 
 def _tangent_space(
     energy: LoopEnergy, x: FloatArray, force: FloatArray
-) -> tuple[Coordinates, FloatArray, FloatArray]:
-    """Return coordinates, tensions, and what of a force (n, d) neither they balance.
+) -> tuple[Coordinates, FloatArray, FloatArray, FloatArray]:
+    """Return coordinates, tensions, a force (n, d) by the coordinates, and what is left.
 
-    Nor along motions that are free: what a mesh leaves of a soap film's force there is a
-    discretisation error.
+    Tensions do not balance that, and it is not along motions that are free: what a mesh
+    leaves of a soap film's force there is a discretisation error.
     """
     free = energy.free_motions(x)
     turns = energy.constraint.turns(x)
@@ -138,18 +138,20 @@ def _by_turns(
     force: FloatArray,
     free: FloatArray,
     turns: EdgeTurns,
-) -> tuple[Coordinates, FloatArray, FloatArray]:
+) -> tuple[Coordinates, FloatArray, FloatArray, FloatArray]:
     tensions = turns.metric.balance(force)
     unbalanced = (force + energy.constraint.force(x, tensions)).reshape(-1, 1)
     root = np.repeat(np.sqrt(energy.weights), x.shape[1])[:, None]
     motions = np.linalg.qr(free * root)[0] * root
     unbalanced -= motions @ (motions.T @ (unbalanced / root**2))
-    return turned(turns, free), tensions, unbalanced.reshape(x.shape)
+    coordinates = turned(turns, free)
+    gradient = coordinates.slope(unbalanced)[:, 0]
+    return coordinates, tensions, gradient, unbalanced.reshape(x.shape)
 
 
 def _by_columns(
     energy: LoopEnergy, x: FloatArray, force: FloatArray, free: FloatArray
-) -> tuple[Coordinates, FloatArray, FloatArray]:
+) -> tuple[Coordinates, FloatArray, FloatArray, FloatArray]:
     scale = np.repeat(np.sqrt(energy.weights), x.shape[1])
     weighted = force.ravel() / scale
     rows = energy.constraint.jacobian(x)
@@ -158,8 +160,9 @@ def _by_columns(
     q, r = np.linalg.qr(normals, mode="complete")
     tensions = -np.linalg.solve(r[:m, :m], q[:, :m].T @ weighted)
     basis = q[:, m + free.shape[1] :]
-    unbalanced = basis @ (basis.T @ weighted) * scale
-    return Columns(basis, scale), tensions, unbalanced.reshape(x.shape)
+    gradient = basis.T @ weighted
+    unbalanced = basis @ gradient * scale
+    return Columns(basis, scale), tensions, gradient, unbalanced.reshape(x.shape)
 
 
 def stability(model: TangentModel) -> Stability:

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
 from eulerplateau.film import FilmOfLoop, make_film
-from eulerplateau.loop import close_with_lengths
+from eulerplateau.loop import close_with_lengths, largest_turning
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
@@ -24,6 +24,8 @@ from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
 _SHAPES = 60
 # A rough start of a large loop is smoothed to what a loop of so many vertices can show.
 _SMOOTH = DENSE_LOOP // 2
+# Degrees by which a crumpled loop turns at some vertex: no soap film is sought across it.
+_CRUMPLED = 90.0
 
 
 def search(
@@ -43,13 +45,14 @@ def search(
     x_loop = close_with_lengths(problem.loop, start.x_loop) if smooth is None else smooth
     if x_loop is None:
         return None
-    if smooth is not None or problem.film.folded(start):
+    if smooth is not None:
         start = _spanned(problem, x_loop) or start
     # Blocks of a hundred rows: two threads would mostly wait for each other.
     with threadpool_limits(1, user_api="blas"):
-        found = _near(problem, start, x_loop, load, max_iterations, observe)
-        if found is not None:
-            return found
+        if largest_turning(x_loop) < _CRUMPLED:
+            found = _near(problem, start, x_loop, load, max_iterations, observe)
+            if found is not None:
+                return found
         tied = _tied(problem)
         if tied is None:
             return None

@@ -63,8 +63,8 @@ def disk_points(rings: int, jitter: float = 0.0) -> tuple[FloatArray, IntArray]:
 
 def sliver(thickness: float, shape: str) -> tuple[FloatArray, IntArray]:
     """A disk with one triangle split at a point so near its side, or its corner."""
-    points, triangles = disk_points(4)
-    number = 20
+    points, shared = disk_points(4)
+    triangles, number = shared.copy(), 20
     i, j, k = triangles[number]
     near = 0.5 * (points[i] + points[j]) if shape == "cap" else points[i]
     far = points[k] if shape == "cap" else 0.5 * (points[j] + points[k])

@@ -147,7 +147,7 @@ def test_what_is_damaged_is_computed_again(
     if damage == "special":
         (folder / "special_points.csv").write_bytes(b"")
     result = run_branches(spec, folder)
-    # Without its special points a run may go on from before the first, if it was kept there.
+    # Without its special points a run goes on from before the first, if it was kept there.
     if damage != "special":
         assert (result.kept > 0) == (damage != "all checkpoints")
     assert ("begins again" in result.before) == (result.kept == 0)

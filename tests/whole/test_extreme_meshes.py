@@ -33,7 +33,7 @@ def test_stretched_polygon_and_its_turned_renumbered_twin_agree_or_both_are_refu
     words = {one.word, two.word}
     if film == "springs" and tension < 5000:
         assert words == {"converged"}
-    on_a_line = all(o.measures and o.measures.max_turning > 170 for o in (one, two))
+    on_a_line = all(o.measures and o.measures["max_turning"] > 170 for o in (one, two))
     if words == {"unresolved"} and on_a_line:
         # Which vertices turn back there is left open, and eigenvalues with them.
         assert one.found is not None

@@ -6,9 +6,11 @@
     between.py      where between two points something vanishes
     special.py      what a fold or a bifurcation is, and the branches that leave it
     family.py       what is varied: energies of a loop that differ in one parameter
+    catalogue.py    the distinct equilibria at a load: from random starts, and by deflation
+                    (deflation.py), told apart by likeness.py
     symmetry.py     which symmetries a mode breaks; scaling.py: exponents at an onset
 
-Nothing here but films.py knows films: any `Family` of energies of a loop can be followed.
+Nothing here but films.py and catalogue.py knows films: any `Family` of energies of a loop can be followed.
 """
 
 import lazy_loader

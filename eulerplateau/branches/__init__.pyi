@@ -1,3 +1,4 @@
+from .catalogue import Entry as Entry, Plan as Plan, catalogue_at as catalogue_at
 from .continuation import follow as follow
 from .exploration import (
     DiagramPoint as DiagramPoint,

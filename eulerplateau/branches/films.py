@@ -122,7 +122,7 @@ def equilibrium(point: BranchPoint) -> Equilibrium:
     return replace(classified, iterations=point.corrections, stability=point.stability)
 
 
-def _near(problem: Problem, shape: Shape) -> tuple[FilmFamily, FloatArray]:
+def family_near(problem: Problem, shape: Shape) -> tuple[FilmFamily, FloatArray]:
     """Return the family good near a shape, and the shape's loop in its coordinates."""
     film = problem.film.of_loop(problem.film.prepared(shape))
     return FilmFamily(problem, film), film.project(shape.x_loop)
@@ -130,7 +130,7 @@ def _near(problem: Problem, shape: Shape) -> tuple[FilmFamily, FloatArray]:
 
 def film_point(found: Equilibrium, problem: Problem, control: StepControl) -> BranchPoint:
     """Return the branch point at an equilibrium, heading for higher loads."""
-    family, x_loop = _near(problem, found.shape)
+    family, x_loop = family_near(problem, found.shape)
     return first_point(family, x_loop, found.load, control)
 
 
@@ -139,7 +139,7 @@ def equilibrium_near(problem: Problem, shape: Shape, load: float) -> Equilibrium
 
     Raises SpecError where Newton's method comes to none.
     """
-    family, x_loop = _near(problem, shape)
+    family, x_loop = family_near(problem, shape)
     with one_thread():
         found = point_near(family, x_loop, load)
         if found is None:

@@ -50,19 +50,12 @@ class ModeSymmetry:
 
 def mode_symmetry(x_loop: FloatArray, mode: FloatArray) -> ModeSymmetry:
     """Classify a displacement `mode` (n, d) of the loop (n, d), d = 3, or 2 in a plane."""
-    centred = _in_space(x_loop - x_loop.mean(axis=0))
-    axes = np.linalg.svd(centred, full_matrices=False)[2]
-    shape, moved = centred @ axes.T, _in_space(mode) @ axes.T
-    numberings = _numberings(len(shape))
+    shape, axes = _along_axes(x_loop)
+    moved = _in_space(mode) @ axes.T
     breaks: list[str] = []
     keeps: list[str] = []
-    for name, signs in OPERATIONS.items():
-        image = shape * np.array(signs)
-        offsets = np.linalg.norm(image[numberings] - shape, axis=(1, 2))
-        best = int(offsets.argmin())
-        if offsets[best] > _SAME_SHAPE * np.sqrt(len(shape)):
-            continue
-        turned = (moved * np.array(signs))[numberings[best]]
+    for name, numbering in _own_operations(shape, _SAME_SHAPE).items():
+        turned = (moved * np.array(OPERATIONS[name]))[numbering]
         parity = float(np.sum(turned * moved) / np.sum(moved * moved))
         if abs(parity) > 0.5:
             (keeps if parity > 0 else breaks).append(name)
@@ -70,12 +63,40 @@ def mode_symmetry(x_loop: FloatArray, mode: FloatArray) -> ModeSymmetry:
     return ModeSymmetry(tuple(breaks), tuple(keeps), transverse)
 
 
+def loop_symmetries(x_loop: FloatArray, within: float) -> tuple[str, ...]:
+    """Return the names in OPERATIONS of those that bring a loop (n, d) back onto itself.
+
+    within : float, the r.m.s. distance, in units of L, up to which they do
+    """
+    return tuple(_own_operations(_along_axes(x_loop)[0], within))
+
+
+def _along_axes(x_loop: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a loop (n, 3) by its principal axes, and these, the rows of (3, 3)."""
+    centred = _in_space(x_loop - x_loop.mean(axis=0))
+    axes = np.linalg.svd(centred, full_matrices=False)[2]
+    return centred @ axes.T, axes
+
+
+def _own_operations(shape: FloatArray, within: float) -> dict[str, IntArray]:
+    """Return the operations of a loop along its axes (n, 3), each with a renumbering."""
+    every = numberings(len(shape))
+    own = {}
+    for name, signs in OPERATIONS.items():
+        image = shape * np.array(signs)
+        offsets = np.linalg.norm(image[every] - shape, axis=(1, 2))
+        best = int(offsets.argmin())
+        if offsets[best] <= within * np.sqrt(len(shape)):
+            own[name] = every[best]
+    return own
+
+
 def _in_space(rows: FloatArray) -> FloatArray:
     """Return vectors (n, d) in space (n, 3)."""
     return np.pad(rows, ((0, 0), (0, 3 - rows.shape[1])))
 
 
-def _numberings(n: int) -> IntArray:
+def numberings(n: int) -> IntArray:
     """Return all 2 n cyclic shifts and reversals of 0 ... n - 1, one per row."""
     v = np.arange(n)
     shifts = (v[None, :] + v[:, None]) % n

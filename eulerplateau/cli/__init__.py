@@ -11,6 +11,7 @@ import click
 
 from eulerplateau import __version__
 from eulerplateau.cli.branches import branches
+from eulerplateau.cli.catalogue import catalogue
 from eulerplateau.cli.cell import cell
 from eulerplateau.cli.collect import collect
 from eulerplateau.cli.doctor import doctor
@@ -43,6 +44,7 @@ def commands() -> None:
 
 
 commands.add_command(branches)
+commands.add_command(catalogue)
 commands.add_command(cell)
 commands.add_command(collect)
 commands.add_command(doctor)

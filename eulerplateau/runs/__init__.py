@@ -5,7 +5,8 @@
     inputs.py       its mesh, and what is in the files that it names
     start.py        where a run starts: at its mesh or at a stored shape
     sweep.py, exploration.py   a sweep, the branches; recording.py: what both write
-    rows.py         the columns of sweep.csv and branches.csv; table.py: the files;
+    catalogue.py    all equilibria at a load
+    rows.py         the columns of sweep.csv and its kin; table.py: the files;
                     folder.py: the folder
     shape_files.py  shapes/*.vtp and their fields, written and read
     record.py       `read_run`: a folder read back; series.py: the curves of its diagram;

@@ -1,3 +1,8 @@
+from .catalogue import (
+    Catalogue as Catalogue,
+    read_catalogue as read_catalogue,
+    run_catalogue as run_catalogue,
+)
 from .cell_kind import cell_state as cell_state
 from .cell_runs import (
     CellRun as CellRun,
@@ -15,7 +20,12 @@ from .phase_diagram import run_phase_diagram as run_phase_diagram
 from .phases import REGIONS as REGIONS, PhaseDiagram as PhaseDiagram
 from .plan import load_with as load_with, planned as planned, run_name as run_name
 from .record import Run as Run, read_run as read_run, read_runs as read_runs
-from .rows import COLUMNS as COLUMNS, BranchRow as BranchRow, Row as Row
+from .rows import (
+    COLUMNS as COLUMNS,
+    BranchRow as BranchRow,
+    CatalogueRow as CatalogueRow,
+    Row as Row,
+)
 from .running import run as run
 from .series import (
     Branch as Branch,

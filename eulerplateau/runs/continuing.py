@@ -96,7 +96,7 @@ def look(
     if not rows and not any(has_row(other) for other in others):
         return Lying((), False, {})
     different = differences(about, summary) or (
-        [] if rows else ["what is followed: sweep or branches"]
+        [] if rows else ["what is computed: sweep, branches or catalogue"]
     )
     finished = about.get("status") == "finished" and len(rows) == len(lines) - 1
     first = loads is not None and [row.load for row in rows] == list(loads[: len(rows)])

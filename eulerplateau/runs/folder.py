@@ -46,6 +46,10 @@ _NEW = ".new"
 _OUR_FILES = (
     "sweep.csv",
     "sweep.pvd",
+    "catalogue.csv",
+    "catalogue.pvd",
+    "catalogue.png",
+    "counts.csv",
     "branches.csv",
     "branches.pvd",
     "branches.png",

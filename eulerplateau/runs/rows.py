@@ -156,6 +156,28 @@ class BranchRow(Row):
     arclength: float
 
 
+@dataclass(frozen=True)
+class CatalogueRow(Row):
+    """An equilibrium of a catalogue: the columns of sweep.csv and these.
+
+    Attributes
+    ----------
+    number : int, among those at its load, by energy
+    symmetry : str, in words
+    by_starts, by_deflation : int, how many searches have come to it
+    first_start, first_guess : int
+        The first random loop, and the first guess of deflation, that led to it; 0 if it is
+        where deflation begins, None if none did.
+    """
+
+    number: int
+    symmetry: str
+    by_starts: int
+    by_deflation: int
+    first_start: int | None
+    first_guess: int | None
+
+
 def columns(row_type: type[Any]) -> tuple[str, ...]:
     """Return the names of the columns of a table of such rows: their fields."""
     return tuple(column.name for column in fields(row_type) if not column.kw_only)

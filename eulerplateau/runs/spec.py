@@ -148,6 +148,29 @@ class BranchSettings(Settings):
     unstable_modes: int = Field(default=3, ge=0)
 
 
+class CatalogueSettings(Settings):
+    """How `eulerplateau catalogue` seeks the equilibria at each load.
+
+    Attributes
+    ----------
+    loads : as sweep.loads, in k L^3 / alpha of springs and sigma_hat of other films
+        By default those of sweep.loads.
+    starts : int
+        So many random loops, and so many guesses for deflation.
+    index : int
+        Equilibria of Morse index up to this one are listed.
+    distance : float, in units of L
+        Two equilibria closer than this (r.m.s.) are the same.
+    seed : int
+    """
+
+    loads: Loads | None = None
+    starts: int = Field(default=100, ge=1)
+    index: int = Field(default=4, ge=0)
+    distance: float = Field(default=0.01, gt=0)
+    seed: int = Field(default=1, ge=0)
+
+
 def _kind_of_mesh(given: Any) -> str:
     if isinstance(given, str):
         problem = f'found "{given}"; should be a section: write mesh.file = "{given}"'
@@ -170,6 +193,7 @@ class RunSpec(Settings):
     solver: SolverSettings = SolverSettings()
     output: OutputSettings = OutputSettings()
     branches: BranchSettings = BranchSettings()
+    catalogue: CatalogueSettings = CatalogueSettings()
 
     @model_validator(mode="after")
     def _quantity_is_the_films(self) -> RunSpec:

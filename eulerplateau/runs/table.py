@@ -18,11 +18,14 @@ from eulerplateau.runs.rows import Record, Row, columns
 from eulerplateau.solvers import Status
 
 _INTEGERS = {
-    "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special"
+    "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special",
+    "number", "by_starts", "by_deflation", "first_start", "first_guess",
 }  # fmt: skip
 _MAY_BE_EMPTY = {
-    "n_unstable", "lowest_eigenvalue", "self_intersections", "origin", "special"
+    "n_unstable", "lowest_eigenvalue", "self_intersections", "origin", "special",
+    "first_start", "first_guess",
 }  # fmt: skip
+_WORDS = {"symmetry"}
 
 SPECIAL = "special_points.csv"
 
@@ -193,10 +196,14 @@ def _cell(name: str, value: Any) -> str:
         return ""
     if name == "status":
         return str(value.value)
+    if name in _WORDS:
+        return str(value)
     return str(int(value)) if name in _INTEGERS else repr(float(value))
 
 
 def _value(name: str, text: str) -> Any:
+    if name in _WORDS:
+        return text
     if text == "" and name in _MAY_BE_EMPTY:
         return None
     if name == "status":

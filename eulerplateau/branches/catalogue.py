@@ -1,0 +1,273 @@
+"""The distinct equilibria of a film at one load, sought in two ways apart from each other.
+
+By starts: from random loops, a few steps towards an equilibrium of a random Morse index,
+and then Newton's method, which comes to equilibria of any. By deflation: from what is known,
+displaced at random and most along its softest modes, Newton's method with all that is known
+divided out, again and again until it comes to nothing new (deflation.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.deflation import (
+    Step,
+    deflated,
+    first,
+    newton,
+    search,
+    towards_index,
+)
+from eulerplateau.branches.films import equilibrium, family_near
+from eulerplateau.branches.likeness import Likeness, likeness
+from eulerplateau.branches.point import BranchPoint, point_near
+from eulerplateau.branches.symmetry import loop_symmetries
+from eulerplateau.loop import Loop, close_with_lengths
+from eulerplateau.mesh import Shape
+from eulerplateau.solvers import Equilibrium, Problem, one_thread, solve
+
+# Random loops are circles with waves of these numbers, of sizes up to this over the number
+# squared; small ones are as many as large ones are rare.
+_WAVES, _SIZE = range(2, 6), 2.0
+# At most so many steps towards an index, before Newton's.
+_TOWARDS = 20
+# The r.m.s. displacements from which deflation starts, in units of L.
+_DISPLACED = 0.005, 0.05
+# Of the stiffest mode's curvature: modes softer are displaced as if they were as stiff.
+_SOFTEST = 1e-7
+# Points along each edge, by which symmetries are told.
+_BETWEEN = 4
+# From one guess deflation finds so many at most.
+_IN_A_ROW = 5
+# A soap film made anew at its own shape so often agrees with it; L.
+_MADE_ANEW, _AGREES = 8, 1e-6
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How equilibria are sought.
+
+    Attributes
+    ----------
+    starts : int, random loops, and as many guesses for deflation
+    index : int, the largest Morse index of interest
+    distance : float, r.m.s. in units of L, up to which two equilibria are the same
+    seed : int
+    """
+
+    starts: int = 100
+    index: int = 4
+    distance: float = 0.01
+    seed: int = 1
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An equilibrium of a catalogue, and how it was found.
+
+    Attributes
+    ----------
+    symmetry : str, in words: see symmetry_of
+    starts, guesses : of int
+        Numbers, from 1, of the random loops and of the guesses of deflation that led to it.
+        Deflation finds nothing twice, but for the guess that ends where it was before.
+    """
+
+    equilibrium: Equilibrium
+    symmetry: str
+    starts: tuple[int, ...]
+    guesses: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class _Met:
+    """An equilibrium, and the numbers of the searches that have come to it."""
+
+    point: BranchPoint
+    searches: list[int]
+
+
+def catalogue_at(
+    problem: Problem,
+    load: float,
+    plan: Plan,
+    searched: Callable[[], None] = lambda: None,
+) -> list[Entry]:
+    """Return the distinct equilibria that are found at a load, by their energies.
+
+    Those of Morse index up to plan.index that the mesh resolves. `searched` is called after
+    each of the 2 plan.starts searches.
+    """
+    finder = _Finder(problem, load, plan, likeness(problem, plan.distance), searched)
+    with one_thread():
+        return finder.merged(finder.by_starts(), finder.by_deflation())
+
+
+@dataclass(frozen=True)
+class _Finder:
+    problem: Problem
+    load: float
+    plan: Plan
+    same: Likeness
+    searched: Callable[[], None]
+
+    def by_starts(self) -> list[_Met]:
+        """Return what random loops come to."""
+        rng = np.random.default_rng([self.plan.seed, 1])
+        met: list[_Met] = []
+        for number in range(1, self.plan.starts + 1):
+            index, steps = rng.integers([self.plan.index + 1, _TOWARDS + 1])
+            step = first(int(steps), towards_index(int(index)), newton)
+            x = random_loop(self.problem.loop, rng)
+            found = self._search(self.problem.disk.shape, x, step)
+            if found is not None:
+                self._is_new(met, found, number)
+            self.searched()
+        return met
+
+    def by_deflation(self) -> list[_Met]:
+        """Return what is found next to each other, from the equilibrium a sweep begins at."""
+        rng = np.random.default_rng([self.plan.seed, 2])
+        met: list[_Met] = []
+        # The minimum may be none that counts, as where a soap film is pinched.
+        for shape in solve(self.problem, self.load).shape, self.problem.disk.shape:
+            base = self._search(shape, shape.x_loop, newton)
+            if base is not None and not met:
+                met.append(_Met(base, [0]))
+        for number in range(1, self.plan.starts + 1):
+            near = [known.point for known in met if self._matters(known.point)]
+            if near:
+                self._deflate(met, near[number % len(near)], rng, number)
+            self.searched()
+        return met
+
+    def _deflate(
+        self, met: list[_Met], around: BranchPoint, rng: np.random.Generator, number: int
+    ) -> None:
+        """Add what is found from one guess near an equilibrium, one after the other."""
+        shape = equilibrium(around).shape
+        x = close_with_lengths(self.problem.loop, displaced(around, rng))
+        for _ in range(_IN_A_ROW):
+            step = deflated([known.point.x for known in met], self.same)
+            found = self._search(shape, x, step)
+            if found is None or not self._is_new(met, found, number):
+                return
+
+    def _search(self, near: Shape, x: FloatArray | None, step: Step) -> BranchPoint | None:
+        """Return the equilibrium that steps lead to from a loop, the film near a shape."""
+        if x is None:
+            return None
+        try:
+            shape = self.problem.film.carried(near, x)
+            family, x = family_near(self.problem, shape)
+            found = search(family, x, self.load, step)
+            return None if found is None else _made_anew(found)
+        except LinAlgError:  # no film across this loop
+            return None
+
+    def _is_new(self, met: list[_Met], point: BranchPoint, number: int) -> bool:
+        """Count an equilibrium among those met; return whether it is new."""
+        for known in met:
+            if self._are_same(known.point, point):
+                known.searches.append(number)
+                return False
+        met.append(_Met(point, [number]))
+        return True
+
+    def _are_same(self, one: BranchPoint, other: BranchPoint) -> bool:
+        return self.same.distance(one.x, other.x) < self.plan.distance
+
+    def _matters(self, point: BranchPoint) -> bool:
+        """Return whether an equilibrium belongs into the catalogue."""
+        if point.stability.n_unstable > self.plan.index:
+            return False
+        return self.problem.classified(equilibrium(point)).converged
+
+    def merged(self, by_starts: list[_Met], by_deflation: list[_Met]) -> list[Entry]:
+        """Return what was found in either way, by energy."""
+        entries, rest = [], list(by_deflation)
+        for met in by_starts:
+            like = [self._are_same(one.point, met.point) for one in rest]
+            twins = [one for one, is_twin in zip(rest, like, strict=True) if is_twin]
+            rest = [one for one, is_twin in zip(rest, like, strict=True) if not is_twin]
+            guesses = sorted(number for one in twins for number in one.searches)
+            entries.append((met.point, met.searches, guesses))
+        entries += [(one.point, [], one.searches) for one in rest]
+        found = [
+            Entry(
+                self.problem.classified(equilibrium(point)),
+                symmetry_of(point.x, self.same, self.plan.distance),
+                tuple(starts),
+                tuple(guesses),
+            )
+            for point, starts, guesses in entries
+            if self._matters(point)
+        ]
+        return sorted(found, key=lambda entry: entry.equilibrium.energy)
+
+
+def random_loop(loop: Loop, rng: np.random.Generator) -> FloatArray | None:
+    """Return a smooth random loop (n, 3) that keeps its lengths; None if it cannot."""
+    s = 2 * np.pi * np.cumsum(loop.rest_lengths) / loop.rest_lengths.sum()
+    x = np.stack([np.cos(s), np.sin(s), np.zeros_like(s)], axis=1)
+    size = _SIZE * rng.uniform() ** 2
+    for wave in _WAVES:
+        a, b = rng.standard_normal((2, 3)) * size / wave**2
+        x += np.outer(np.cos(wave * s), a) + np.outer(np.sin(wave * s), b)
+    return close_with_lengths(loop, x * loop.rest_lengths.sum() / (2 * np.pi))
+
+
+def displaced(point: BranchPoint, rng: np.random.Generator) -> FloatArray:
+    """Return an equilibrium's loop (n, 3) displaced at random, as heat would displace it.
+
+    That is along each mode by the inverse root of its stiffness.
+    """
+    values, vectors = point.model.eigen
+    stiffness = np.maximum(np.abs(values), _SOFTEST * np.abs(values).max())
+    moved = point.model.displacement(
+        vectors @ (rng.standard_normal(len(values)) / np.sqrt(stiffness))
+    )
+    size = np.sqrt(np.mean(np.sum(moved**2, axis=1)))
+    return point.x + moved * (rng.uniform(*_DISPLACED) / size)
+
+
+def _made_anew(point: BranchPoint) -> BranchPoint | None:
+    """Return an equilibrium with its film known at its own shape; None if it gets lost."""
+    for _ in range(_MADE_ANEW):
+        family = point.family.near(point.x)
+        if family is point.family:
+            return point
+        again = point_near(family, point.x, point.value)
+        if again is None:
+            return None
+        moved = float(np.abs(again.x - point.x).max())
+        point = again
+        if moved < _AGREES:
+            return point
+    return None
+
+
+def symmetry_of(x: FloatArray, same: Likeness, within: float) -> str:
+    """Return what brings a loop (n, 3) back onto itself, in words.
+
+    `round`, or into how many parts that are alike it falls; and the mirrors, half turns and
+    the inversion along its principal axes.
+    """
+    turns = same.turns(x, within)
+    if turns == 0:
+        return "round"
+    parts = [f"{turns}-fold"] if turns > 1 else []
+    return "; ".join([*parts, *loop_symmetries(_finer(x), within)])
+
+
+def _finer(x: FloatArray) -> FloatArray:
+    """Return a loop (n, 3) with points between its vertices, where an axis may pass."""
+    after = np.roll(x, -1, axis=0)
+    parts = np.arange(_BETWEEN)[None, :, None] / _BETWEEN
+    finer: FloatArray = x[:, None] + parts * (after - x)[:, None]
+    return finer.reshape(-1, x.shape[1])

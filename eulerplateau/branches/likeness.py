@@ -1,0 +1,155 @@
+"""Which loops are the same: up to rigid motion, reflection, and numbering.
+
+Loops are compared by points that lie evenly along them. Of a film that is tied to its rest
+mesh only those numberings change nothing that bring the loop at rest back onto itself; a
+soap film's loop slides, and may be numbered from anywhere, either way round.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.branches.symmetry import numberings
+from eulerplateau.solvers import Problem
+
+# Points are numbered alike after 1/2, 1/3, 1/4, 1/6 and 1/12 of the way round.
+_DIVISIBLE = 12
+
+
+@dataclass(frozen=True)
+class Difference:
+    """What is left of a loop less the copy of another that comes closest to it.
+
+    Attributes
+    ----------
+    rest : (m, 3) float, at the points by which they are compared
+    """
+
+    rest: FloatArray
+
+    @property
+    def square(self) -> float:
+        """The mean square of the distance, in units of L^2."""
+        return float(np.mean(np.sum(self.rest**2, axis=1)))
+
+    @property
+    def distance(self) -> float:
+        """The r.m.s. distance, in units of L."""
+        return float(np.sqrt(self.square))
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """Which copies of a loop (n, 3) are the same, by m points along it.
+
+    Attributes
+    ----------
+    points : (m, n) float, which takes vertices to points
+    numberings : (k, m) int, those that change nothing
+    slides : bool, whether the loop slides along itself for nothing
+    """
+
+    points: FloatArray
+    numberings: IntArray
+    slides: bool
+
+    def distance(self, x: FloatArray, other: FloatArray) -> float:
+        """Return the r.m.s. distance of two loops (n, 3), less what makes no difference."""
+        return self.difference(x, other).distance
+
+    def difference(self, x: FloatArray, other: FloatArray) -> Difference:
+        """Return what is left of a loop less the nearest copy of another, both (n, 3).
+
+        Of all copies by rotations and reflections, Kabsch's is the nearest; its square is
+        that of both loops less twice the sum of singular values.
+        """
+        a, b = self._centred(x), self._centred(other)
+        copies = b[self.numberings]
+        overlap = np.einsum("kmi,mj->kij", copies, a)
+        nearest = int(np.linalg.svd(overlap, compute_uv=False).sum(axis=1).argmax())
+        u, _, vt = np.linalg.svd(overlap[nearest])
+        rest = a - copies[nearest] @ u @ vt
+        return Difference(self._unslid(a, rest) if self.slides else rest)
+
+    def slope(self, difference: Difference, moved: FloatArray) -> float:
+        """Return how the square of a difference changes as its loop moves (n, 3).
+
+        The nearest copy is stationary: to first order it makes no difference that it moves.
+        """
+        step = self.points @ moved
+        return 2 * float(np.mean(np.sum(difference.rest * step, axis=1)))
+
+    def turns(self, x: FloatArray, within: float) -> int:
+        """Return after how many parts of the way round a loop (n, 3) is the same again.
+
+        0 of a loop that is the same anywhere: a circle.
+        """
+        a = self._centred(x)
+        shifts = numberings(len(a))[: len(a)]
+        same = _squares(a, shifts) < within**2
+        return int(np.sum(same & ~np.roll(same, 1)))
+
+    def _centred(self, x: FloatArray) -> FloatArray:
+        points = self.points @ x
+        centred: FloatArray = points - points.mean(axis=0)
+        return centred
+
+    @staticmethod
+    def _unslid(a: FloatArray, rest: FloatArray) -> FloatArray:
+        """Return a difference less what moves points along the loop by less than one."""
+        along = np.roll(a, -1, axis=0) - np.roll(a, 1, axis=0)
+        part: float = np.sum(rest * along) / np.sum(along * along)
+        return rest - part * along
+
+
+def likeness(problem: Problem, within: float) -> Likeness:
+    """Return which loops of a film are the same.
+
+    within : float
+        The r.m.s. distance, in units of L, up to which a numbering of a tied film's loop
+        at rest brings it back onto itself.
+    """
+    rest = problem.disk.x[problem.disk.loop]
+    slides = problem.film.slide(problem.loop, rest) is not None
+    # From its farthest vertex: a mirror of a polygon goes through a corner.
+    first = int(np.linalg.norm(rest - rest.mean(axis=0), axis=1).argmax())
+    points = _evenly(problem.loop.rest_lengths, first)
+    every = numberings(len(points))
+    if slides:
+        return Likeness(points, every, slides)
+    return Likeness(points, _symmetries(points @ rest, every, within), slides)
+
+
+def _symmetries(rest: FloatArray, every: IntArray, within: float) -> IntArray:
+    """Return those numberings (k, m) that bring points at rest (m, 3) back onto themselves.
+
+    Their own is the first of them.
+    """
+    squares = _squares(rest - rest.mean(axis=0), every)
+    return every[squares < within**2]
+
+
+def _squares(a: FloatArray, every: IntArray) -> FloatArray:
+    """Return the mean squares (k,) of centred points (m, 3) less themselves renumbered."""
+    overlap = np.einsum("kmi,mj->kij", a[every], a)
+    gained = np.linalg.svd(overlap, compute_uv=False).sum(axis=1)
+    squares: FloatArray = 2 * np.maximum(np.sum(a**2) - gained, 0.0) / len(a)
+    return squares
+
+
+def _evenly(rest_lengths: FloatArray, first: int) -> FloatArray:
+    """Return what takes vertices (n, d) to points evenly along their edges (m, d)."""
+    n = len(rest_lengths)
+    m = _DIVISIBLE * -(-n // _DIVISIBLE)
+    s = np.roll(rest_lengths, -first)
+    ends = np.concatenate([[0.0], np.cumsum(s)])
+    place = ends[-1] * np.arange(m) / m
+    edge = np.minimum(np.searchsorted(ends, place, side="right") - 1, n - 1)
+    part = (place - ends[edge]) / s[edge]
+    points = np.zeros((m, n))
+    points[np.arange(m), (edge + first) % n] = 1 - part
+    points[np.arange(m), (edge + 1 + first) % n] += part
+    return points

@@ -1,0 +1,126 @@
+"""Carry out a catalogue: the distinct equilibria at each load, into a folder."""
+
+from __future__ import annotations
+
+import csv
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from eulerplateau.branches import Entry, Plan, catalogue_at
+from eulerplateau.errors import OutputError, SpecError
+from eulerplateau.film import FILM_LOADS
+from eulerplateau.mesh import write_whole
+from eulerplateau.runs.folder import read_summary
+from eulerplateau.runs.kinds import FILM
+from eulerplateau.runs.loads import in_order
+from eulerplateau.runs.recording import Opening, make_mesh, recording
+from eulerplateau.runs.rows import CatalogueRow
+from eulerplateau.runs.spec import RunSpec
+from eulerplateau.runs.table import read_rows, table_content
+from eulerplateau.solvers import Problem
+
+COUNT_COLUMNS = "load", "search", "by_starts", "by_deflation", "together"
+
+
+@dataclass(frozen=True)
+class Catalogue:
+    """What a catalogue came to; `finished` if an earlier call had come to it.
+
+    Attributes
+    ----------
+    counts : dictionaries of COUNT_COLUMNS
+        How many distinct equilibria so many searches of each kind had found.
+    """
+
+    folder: Path
+    rows: tuple[CatalogueRow, ...]
+    counts: tuple[dict[str, float], ...]
+    seconds: float
+    finished: bool = False
+
+
+def run_catalogue(
+    spec: RunSpec,
+    path: Path,
+    on_search: Callable[[float], None] = lambda load: None,
+    *,
+    overwrite: bool = False,
+) -> Catalogue:
+    """List the equilibria of `spec` at its loads into the folder `path`.
+
+    The rows of a load appear when all its searches, of which `on_search` is told, are over.
+    This very run, finished, is left as it is; unfinished, it starts again. Another run
+    raises ConflictError, or is replaced if `overwrite` is true.
+    """
+    started = time.perf_counter()
+    if spec.film.plane:
+        raise SpecError("film.plane", "should be false: equilibria leave the plane")
+    disk = make_mesh(spec)
+    problem = Problem(disk, spec.film.model)
+    settings = spec.catalogue
+    plan = Plan(settings.starts, settings.index, settings.distance, settings.seed)
+    column = FILM_LOADS[spec.film.model].column
+    opening = Opening("catalogue", CatalogueRow, column, overwrite, resumable=False)
+    counts: list[dict[str, float]] = []
+    with recording(spec, disk, path, opening, started) as recorder:
+        run = recorder.run
+        if run.finished:
+            return Catalogue(path, tuple(run.rows), _read_counts(path), run.seconds, True)
+        for load in catalogue_loads(spec):
+            found = catalogue_at(problem, load, plan, lambda load=load: on_search(load))  # type: ignore[misc]
+            for number, entry in enumerate(found):
+                recorder.record(
+                    entry.equilibrium,
+                    {},
+                    number=number,
+                    symmetry=entry.symmetry,
+                    by_starts=len(entry.starts),
+                    by_deflation=len(entry.guesses),
+                    first_start=min(entry.starts, default=None),
+                    first_guess=min(entry.guesses, default=None),
+                )
+            counts += _counted(load, found, plan.starts)
+            write_whole(path / "counts.csv", table_content(COUNT_COLUMNS, counts))
+        run.totals |= {"equilibria": len(run.rows)}
+    return Catalogue(path, tuple(run.rows), tuple(counts), run.seconds)
+
+
+def catalogue_loads(spec: RunSpec) -> list[float]:
+    """Return the loads of a catalogue, rising."""
+    given = spec.catalogue.loads
+    return sorted(set(spec.loads())) if given is None else in_order(given, "up")
+
+
+def _counted(load: float, found: Sequence[Entry], searches: int) -> list[dict[str, float]]:
+    """Return how many of the equilibria were known after each search."""
+    starts = [min(entry.starts, default=searches + 1) for entry in found]
+    guesses = [min(entry.guesses, default=searches + 1) for entry in found]
+    either = [min(pair) for pair in zip(starts, guesses, strict=True)]
+    firsts = dict(zip(COUNT_COLUMNS[2:], (starts, guesses, either), strict=True))
+    return [
+        {"load": load, "search": number}
+        | {name: sum(first <= number for first in all_) for name, all_ in firsts.items()}
+        for number in range(1, searches + 1)
+    ]
+
+
+def read_catalogue(folder: Path) -> Catalogue:
+    """Read a folder that `run_catalogue` has written; raises OutputError."""
+    column = FILM.load(read_summary(folder)).column
+    rows = read_rows(folder / "catalogue.csv", CatalogueRow, column)
+    return Catalogue(folder, tuple(rows), _read_counts(folder), 0.0, True)
+
+
+def _read_counts(folder: Path) -> tuple[dict[str, float], ...]:
+    """Read counts.csv of a folder; raises OutputError if it cannot be read."""
+    path = folder / "counts.csv"
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            lines = list(csv.DictReader(file))
+        return tuple({name: float(line[name]) for name in COUNT_COLUMNS} for line in lines)
+    except OSError as error:
+        raise OutputError(path, f"cannot be read: {error.strerror}") from None
+    except (KeyError, ValueError, TypeError):
+        raise OutputError(path, "is no table of counts") from None

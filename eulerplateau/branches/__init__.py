@@ -10,7 +10,8 @@
                     (deflation.py), told apart by likeness.py
     symmetry.py     which symmetries a mode breaks; scaling.py: exponents at an onset
 
-Nothing here but films.py and catalogue.py knows films: any `Family` of energies of a loop can be followed.
+Only films.py, catalogue.py and likeness.py know films: any `Family` of energies of a loop
+can be followed.
 """
 
 import lazy_loader

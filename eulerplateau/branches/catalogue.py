@@ -1,9 +1,9 @@
 """The distinct equilibria of a film at one load, sought in two ways apart from each other.
 
 By starts: from random loops, a few steps towards an equilibrium of a random Morse index,
-and then Newton's method, which comes to equilibria of any. By deflation: from what is known,
-displaced at random and most along its softest modes, Newton's method with all that is known
-divided out, again and again until it comes to nothing new (deflation.py).
+and then Newton's method, which comes to equilibria of any. By deflation: from what is
+known, displaced at random and most along its softest modes, Newton's method with all that
+is known divided out, again and again until it comes to nothing new (deflation.py).
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ class _Finder:
         return met
 
     def by_deflation(self) -> list[_Met]:
-        """Return what is found next to each other, from the equilibrium a sweep begins at."""
+        """Return what deflation finds, from the equilibrium that a sweep begins at."""
         rng = np.random.default_rng([self.plan.seed, 2])
         met: list[_Met] = []
         # The minimum may be none that counts, as where a soap film is pinched.
@@ -269,5 +269,5 @@ def _finer(x: FloatArray) -> FloatArray:
     """Return a loop (n, 3) with points between its vertices, where an axis may pass."""
     after = np.roll(x, -1, axis=0)
     parts = np.arange(_BETWEEN)[None, :, None] / _BETWEEN
-    finer: FloatArray = x[:, None] + parts * (after - x)[:, None]
-    return finer.reshape(-1, x.shape[1])
+    finer: FloatArray = (x[:, None] + parts * (after - x)[:, None]).reshape(-1, x.shape[1])
+    return finer

@@ -5,8 +5,8 @@ Deflation (Farrell, Birkisson and Funke 2015): the gradient g is multiplied by
     M(x) = prod_i (1 + 1 / d_i(x)^2),
 
 d_i / L the distance to the nearest copy of the i-th known equilibrium (likeness.py). Where
-M g vanishes g does, but Newton's method on M g is driven away from what is known. Its step is
-Newton's own, p, times a number (Sherman and Morrison's formula),
+M g vanishes g does, but Newton's method on M g is driven away from what is known. Its step
+is Newton's own, p, times a number (Sherman and Morrison's formula),
 
     p / (1 - p . grad M / M).
 """
@@ -28,7 +28,7 @@ from eulerplateau.solvers import TangentModel, tangent_model
 
 # R.m.s. lengths of steps, in units of L.
 _FIRST_RADIUS, _LONGEST, _SMALLEST_RADIUS = 0.01, 0.1, 1e-5
-_STEPS = 60
+_STEPS = 40
 # Residual below which a loop is next to an equilibrium.
 _NEXT = 1e-3
 # Of the largest: curvatures below are taken for this, lest a soft mode takes all of a step.

@@ -17,6 +17,7 @@ from eulerplateau.solvers import Problem
 
 # Points are numbered alike after 1/2, 1/3, 1/4, 1/6 and 1/12 of the way round.
 _DIVISIBLE = 12
+_SLIDINGS = 5
 
 
 @dataclass(frozen=True)
@@ -70,9 +71,8 @@ class Likeness:
         copies = b[self.numberings]
         overlap = np.einsum("kmi,mj->kij", copies, a)
         nearest = int(np.linalg.svd(overlap, compute_uv=False).sum(axis=1).argmax())
-        u, _, vt = np.linalg.svd(overlap[nearest])
-        rest = a - copies[nearest] @ u @ vt
-        return Difference(self._unslid(a, rest) if self.slides else rest)
+        copy = copies[nearest]
+        return Difference(a - _turned(_slid(copy, a) if self.slides else copy, a))
 
     def slope(self, difference: Difference, moved: FloatArray) -> float:
         """Return how the square of a difference changes as its loop moves (n, 3).
@@ -97,12 +97,31 @@ class Likeness:
         centred: FloatArray = points - points.mean(axis=0)
         return centred
 
-    @staticmethod
-    def _unslid(a: FloatArray, rest: FloatArray) -> FloatArray:
-        """Return a difference less what moves points along the loop by less than one."""
-        along = np.roll(a, -1, axis=0) - np.roll(a, 1, axis=0)
-        part: float = np.sum(rest * along) / np.sum(along * along)
-        return rest - part * along
+
+def _turned(copy: FloatArray, a: FloatArray) -> FloatArray:
+    """Return centred points (m, 3) turned and reflected to lie closest to others (Kabsch)."""
+    u, _, vt = np.linalg.svd(copy.T @ a)
+    turned: FloatArray = copy @ u @ vt
+    return turned
+
+
+def _slid(copy: FloatArray, a: FloatArray) -> FloatArray:
+    """Return centred points (m, 3) moved along their loop, by less than one, towards others.
+
+    By Gauss and Newton's steps in rotations and sliding together.
+    """
+    for _ in range(_SLIDINGS):
+        turned = _turned(copy, a)
+        rotations = [np.cross(axis, turned) for axis in np.eye(3)]
+        moves = np.stack([*rotations, _along(turned)], axis=-1).reshape(-1, 4)
+        slid = np.linalg.lstsq(moves, (a - turned).ravel(), rcond=1e-6)[0][3]
+        copy = copy + slid * _along(copy)
+    return copy
+
+
+def _along(points: FloatArray) -> FloatArray:
+    """Return differences of the neighbours (m, 3) of points along a loop, centred."""
+    return np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
 
 
 def likeness(problem: Problem, within: float) -> Likeness:
@@ -113,7 +132,9 @@ def likeness(problem: Problem, within: float) -> Likeness:
         at rest brings it back onto itself.
     """
     rest = problem.disk.x[problem.disk.loop]
-    slides = problem.film.slide(problem.loop, rest) is not None
+    # Of a round loop sliding is a rotation: whether it costs nothing is asked of a long one.
+    long = rest + np.outer(*_longest(rest))
+    slides = problem.film.slide(problem.loop, long) is not None
     # From its farthest vertex: a mirror of a polygon goes through a corner.
     first = int(np.linalg.norm(rest - rest.mean(axis=0), axis=1).argmax())
     points = _evenly(problem.loop.rest_lengths, first)
@@ -121,6 +142,13 @@ def likeness(problem: Problem, within: float) -> Likeness:
     if slides:
         return Likeness(points, every, slides)
     return Likeness(points, _symmetries(points @ rest, every, within), slides)
+
+
+def _longest(rest: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return how far points (m, 3) lie along their longest axis (m,), and that axis (3,)."""
+    centred = rest - rest.mean(axis=0)
+    axis: FloatArray = np.linalg.svd(centred, full_matrices=False)[2][0]
+    return centred @ axis, axis
 
 
 def _symmetries(rest: FloatArray, every: IntArray, within: float) -> IntArray:

@@ -1,4 +1,4 @@
-"""A catalogue as a picture: a portrait of each equilibrium, and how the count has settled."""
+"""A catalogue as a picture: each equilibrium, and how their count has settled."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def plot_catalogue(catalogue: Catalogue, path: Path) -> None:
     counts = bottom.subplots(1, len(loads), squeeze=False, sharey=True)[0]
     for load, ax in zip(loads, counts, strict=True):
         _draw_counts(ax, catalogue, load)
-    counts[0].set_ylabel("distinct equilibria")
+    counts[0].set_ylabel("distinct equilibria", fontsize=8)
     counts[0].legend(frameon=False, fontsize=7, loc="lower right")
     save(figure, path)
 
@@ -87,9 +87,9 @@ def _draw_counts(ax: Axes, catalogue: Catalogue, load: float) -> None:
     for name, (label, colour) in _CURVES.items():
         found = [count[name] for count in own]
         ax.step(searches, found, _STYLES[name], where="post", color=colour, label=label)
-    ax.set_ylim(bottom=0)
     ax.set_xlabel("searches of each kind", fontsize=8)
     ax.set_title(f"load {load:.6g}", fontsize=8)
+    ax.tick_params(labelsize=7)
     ax.locator_params(axis="y", integer=True)
     frame(ax)
-    ax.set_ylim(bottom=0)
+    ax.set_ylim(0, 1 + max(count["together"] for count in catalogue.counts))

@@ -1,0 +1,1 @@
+"""How many equilibria there are (docs/catalogue.md)."""

@@ -233,7 +233,8 @@ def displaced(point: BranchPoint, rng: np.random.Generator) -> FloatArray:
         vectors @ (rng.standard_normal(len(values)) / np.sqrt(stiffness))
     )
     size = np.sqrt(np.mean(np.sum(moved**2, axis=1)))
-    return point.x + moved * (rng.uniform(*_DISPLACED) / size)
+    found: FloatArray = point.x + moved * (rng.uniform(*_DISPLACED) / size)
+    return found
 
 
 def _made_anew(point: BranchPoint) -> BranchPoint | None:

@@ -72,7 +72,8 @@ class Likeness:
         overlap = np.einsum("kmi,mj->kij", copies, a)
         nearest = int(np.linalg.svd(overlap, compute_uv=False).sum(axis=1).argmax())
         copy = copies[nearest]
-        return Difference(a - _turned(_slid(copy, a) if self.slides else copy, a))
+        moved = _slid(copy, a) if self.slides else copy
+        return Difference(a - moved @ _turn(moved, a))
 
     def slope(self, difference: Difference, moved: FloatArray) -> float:
         """Return how the square of a difference changes as its loop moves (n, 3).
@@ -98,30 +99,31 @@ class Likeness:
         return centred
 
 
-def _turned(copy: FloatArray, a: FloatArray) -> FloatArray:
-    """Return centred points (m, 3) turned and reflected to lie closest to others (Kabsch)."""
+def _turn(copy: FloatArray, a: FloatArray) -> FloatArray:
+    """Return what turns and reflects centred points (m, 3) to lie closest to others.
+
+    A matrix (3, 3) for rows (Kabsch).
+    """
     u, _, vt = np.linalg.svd(copy.T @ a)
-    turned: FloatArray = copy @ u @ vt
-    return turned
+    turn: FloatArray = u @ vt
+    return turn
 
 
 def _slid(copy: FloatArray, a: FloatArray) -> FloatArray:
-    """Return centred points (m, 3) moved along their loop, by less than one, towards others.
+    """Return centred points (m, 3) moved along their loop, towards others.
 
-    By Gauss and Newton's steps in rotations and sliding together.
+    By Gauss and Newton's steps in rotations and sliding together. Sliding is in straight
+    lines: then the best place is stationary, and `slope` is exact.
     """
+    along, slid = np.roll(copy, -1, axis=0) - np.roll(copy, 1, axis=0), 0.0
     for _ in range(_SLIDINGS):
-        turned = _turned(copy, a)
+        moved = copy + slid * along
+        turn = _turn(moved, a)
+        turned = moved @ turn
         rotations = [np.cross(axis, turned) for axis in np.eye(3)]
-        moves = np.stack([*rotations, _along(turned)], axis=-1).reshape(-1, 4)
-        slid = np.linalg.lstsq(moves, (a - turned).ravel(), rcond=1e-6)[0][3]
-        copy = copy + slid * _along(copy)
-    return copy
-
-
-def _along(points: FloatArray) -> FloatArray:
-    """Return differences of the neighbours (m, 3) of points along a loop, centred."""
-    return np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
+        moves = np.stack([*rotations, along @ turn], axis=-1).reshape(-1, 4)
+        slid += float(np.linalg.lstsq(moves, (a - turned).ravel(), rcond=1e-6)[0][3])
+    return copy + slid * along
 
 
 def likeness(problem: Problem, within: float) -> Likeness:
@@ -132,7 +134,7 @@ def likeness(problem: Problem, within: float) -> Likeness:
         at rest brings it back onto itself.
     """
     rest = problem.disk.x[problem.disk.loop]
-    # Of a round loop sliding is a rotation: whether it costs nothing is asked of a long one.
+    # Of a round loop sliding is a rotation: a long one is asked whether it costs nothing.
     long = rest + np.outer(*_longest(rest))
     slides = problem.film.slide(problem.loop, long) is not None
     # From its farthest vertex: a mirror of a polygon goes through a corner.
@@ -145,7 +147,7 @@ def likeness(problem: Problem, within: float) -> Likeness:
 
 
 def _longest(rest: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return how far points (m, 3) lie along their longest axis (m,), and that axis (3,)."""
+    """Return how far points (m, 3) lie along their longest axis, and that axis (3,)."""
     centred = rest - rest.mean(axis=0)
     axis: FloatArray = np.linalg.svd(centred, full_matrices=False)[2][0]
     return centred @ axis, axis

@@ -66,7 +66,7 @@ def counted(found: Sequence[Entry], starts: int) -> tuple[str, ...]:
 def listed(entry: Entry) -> tuple[str, ...]:
     """Return the row of LISTED behind film and load."""
     found = entry.equilibrium
-    guess = str(min(entry.guesses)) if entry.guesses else "–"
+    guess = str(min(entry.guesses)) if entry.guesses else "-"
     numbers = f"{found.energy:.3f}", str(found.n_unstable), str(len(entry.starts)), guess
     return *numbers, entry.symmetry or "none"
 

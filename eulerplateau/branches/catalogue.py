@@ -26,7 +26,7 @@ from eulerplateau.branches.deflation import (
 from eulerplateau.branches.films import equilibrium, family_near
 from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint, point_near
-from eulerplateau.branches.symmetry import loop_symmetries
+from eulerplateau.branches.symmetry import OPERATIONS, loop_symmetries
 from eulerplateau.loop import Loop, close_with_lengths
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers import Equilibrium, Problem, one_thread, solve
@@ -134,9 +134,10 @@ class _Finder:
         """Return what deflation finds, from the equilibrium that a sweep begins at."""
         rng = np.random.default_rng([self.plan.seed, 2])
         met: list[_Met] = []
-        # The minimum may be none that counts, as where a soap film is pinched.
-        for shape in solve(self.problem, self.load).shape, self.problem.disk.shape:
-            base = self._search(shape, shape.x_loop, newton)
+        # Where there is no such equilibrium, as of a soap film that is pinched: a circle.
+        lowest, rest = solve(self.problem, self.load).shape, self.problem.disk.shape
+        for shape, x in (lowest, lowest.x_loop), (rest, circle(self.problem.loop)):
+            base = self._search(shape, x, newton)
             if base is not None and not met:
                 met.append(_Met(base, [0]))
         for number in range(1, self.plan.starts + 1):
@@ -213,13 +214,24 @@ class _Finder:
 
 def random_loop(loop: Loop, rng: np.random.Generator) -> FloatArray | None:
     """Return a smooth random loop (n, 3) that keeps its lengths; None if it cannot."""
-    s = 2 * np.pi * np.cumsum(loop.rest_lengths) / loop.rest_lengths.sum()
-    x = np.stack([np.cos(s), np.sin(s), np.zeros_like(s)], axis=1)
-    size = _SIZE * rng.uniform() ** 2
+    x, s = circle(loop), _angles(loop)
+    size, radius = _SIZE * rng.uniform() ** 2, np.linalg.norm(x[0])
     for wave in _WAVES:
-        a, b = rng.standard_normal((2, 3)) * size / wave**2
+        a, b = rng.standard_normal((2, 3)) * size / wave**2 * radius
         x += np.outer(np.cos(wave * s), a) + np.outer(np.sin(wave * s), b)
-    return close_with_lengths(loop, x * loop.rest_lengths.sum() / (2 * np.pi))
+    return close_with_lengths(loop, x)
+
+
+def circle(loop: Loop) -> FloatArray:
+    """Return a circle (n, 3) that is as long as the loop, its vertices as far apart."""
+    s, radius = _angles(loop), loop.rest_lengths.sum() / (2 * np.pi)
+    return radius * np.stack([np.cos(s), np.sin(s), np.zeros_like(s)], axis=1)
+
+
+def _angles(loop: Loop) -> FloatArray:
+    lengths = loop.rest_lengths
+    angles: FloatArray = 2 * np.pi * np.cumsum(lengths) / lengths.sum()
+    return angles
 
 
 def displaced(point: BranchPoint, rng: np.random.Generator) -> FloatArray:
@@ -256,14 +268,24 @@ def _made_anew(point: BranchPoint) -> BranchPoint | None:
 def symmetry_of(x: FloatArray, same: Likeness, within: float) -> str:
     """Return what brings a loop (n, 3) back onto itself, in words.
 
-    `round`, or into how many parts that are alike it falls; and the mirrors, half turns and
-    the inversion along its principal axes.
+    `round`, and how often it is wound; or into how many parts that are alike it falls, and
+    the mirrors, half turns and inversion along its axes, `box` if it has all of them.
     """
     turns = same.turns(x, within)
     if turns == 0:
-        return "round"
+        times = round(_turning(x) / (2 * np.pi))
+        return "round" if times == 1 else f"round; wound {times} times"
     parts = [f"{turns}-fold"] if turns > 1 else []
-    return "; ".join([*parts, *loop_symmetries(_finer(x), within)])
+    own = loop_symmetries(_finer(x), within)
+    return "; ".join([*parts, *(["box"] if len(own) == len(OPERATIONS) else own)])
+
+
+def _turning(x: FloatArray) -> float:
+    """Return the sum of the angles between consecutive edges of a loop (n, 3), radians."""
+    edges = np.roll(x, -1, axis=0) - x
+    edges /= np.linalg.norm(edges, axis=1)[:, None]
+    cosines = np.sum(edges * np.roll(edges, 1, axis=0), axis=1)
+    return float(np.sum(np.arccos(np.clip(cosines, -1, 1))))
 
 
 def _finer(x: FloatArray) -> FloatArray:

@@ -1,6 +1,7 @@
 """Branches of equilibria, stable or not, through folds and bifurcations.
 
     films.py        branches of a film: `explore`, and how one starts from a shape
+    film_family.py  a film under one load after another, near one shape after another
     exploration.py  the order in which all branches that hang together are followed
     continuation.py one branch, point by point (point.py); the step's length
     between.py      where between two points something vanishes
@@ -10,8 +11,8 @@
                     (deflation.py), told apart by likeness.py
     symmetry.py     which symmetries a mode breaks; scaling.py: exponents at an onset
 
-Only films.py, catalogue.py and likeness.py know films: any `Family` of energies of a loop
-can be followed.
+Only the two of films, catalogue.py and likeness.py know films: any `Family` of energies of
+a loop can be followed.
 """
 
 import lazy_loader

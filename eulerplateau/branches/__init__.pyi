@@ -7,10 +7,9 @@ from .exploration import (
     explore_on as explore_on,
 )
 from .family import Family as Family
+from .film_family import FilmFamily as FilmFamily, equilibrium as equilibrium
 from .films import (
-    FilmFamily as FilmFamily,
     FilmPoint as FilmPoint,
-    equilibrium as equilibrium,
     equilibrium_near as equilibrium_near,
     explore as explore,
     film_point as film_point,

@@ -23,7 +23,7 @@ from eulerplateau.branches.deflation import (
     search,
     towards_index,
 )
-from eulerplateau.branches.films import equilibrium, family_near
+from eulerplateau.branches.film_family import equilibrium, family_near
 from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint, point_near
 from eulerplateau.branches.symmetry import OPERATIONS, loop_symmetries
@@ -225,7 +225,8 @@ def random_loop(loop: Loop, rng: np.random.Generator) -> FloatArray | None:
 def circle(loop: Loop) -> FloatArray:
     """Return a circle (n, 3) that is as long as the loop, its vertices as far apart."""
     s, radius = _angles(loop), loop.rest_lengths.sum() / (2 * np.pi)
-    return radius * np.stack([np.cos(s), np.sin(s), np.zeros_like(s)], axis=1)
+    x: FloatArray = radius * np.stack([np.cos(s), np.sin(s), np.zeros_like(s)], axis=1)
+    return x
 
 
 def _angles(loop: Loop) -> FloatArray:

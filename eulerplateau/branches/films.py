@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, cast
-
-from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.exploration import (
@@ -15,6 +12,12 @@ from eulerplateau.branches.exploration import (
     Limits,
     explore_from,
     explore_on,
+)
+from eulerplateau.branches.film_family import (
+    FilmFamily,
+    equilibrium,
+    family_near,
+    family_of,
 )
 from eulerplateau.branches.point import (
     BranchPoint,
@@ -24,8 +27,6 @@ from eulerplateau.branches.point import (
 )
 from eulerplateau.branches.progress import Arrays, progress_from
 from eulerplateau.errors import SpecError
-from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import LoopEnergy
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers import (
     Equilibrium,
@@ -38,38 +39,6 @@ from eulerplateau.solvers import (
 
 # Unresolved is no obstacle: the rows say so.
 _EQUILIBRIA = Status.CONVERGED, Status.UNRESOLVED
-
-
-@dataclass(frozen=True)
-class FilmFamily:
-    """A film on its loop under one load after another, good near one shape."""
-
-    problem: Problem
-    film: FilmOfLoop
-    parameter: str = "load"
-
-    def energy(self, value: float) -> LoopEnergy:
-        """Return the energy at a load."""
-        return self.film.energy(self.problem.loop, value)
-
-    def near(self, x: FloatArray) -> FilmFamily:
-        """Return the film made anew at a loop (n_b, 3)."""
-        return self._with(self.film.renewed(x))
-
-    def released(self, x: FloatArray) -> FilmFamily:
-        """Return the film as a minimal surface, where it is curved."""
-        return self._with(self.film.released(x))
-
-    def kept(self, x: FloatArray) -> Mapping[str, NDArray[Any]]:
-        """Return what makes the film again, good near a loop (n_b, 3)."""
-        return self.film.kept(x)
-
-    def restored(self, kept: Mapping[str, NDArray[Any]]) -> FilmFamily:
-        """Return the film that this was kept of."""
-        return self._with(self.film.restored(kept))
-
-    def _with(self, film: FilmOfLoop) -> FilmFamily:
-        return self if film is self.film else replace(self, film=film)
 
 
 @dataclass(frozen=True, repr=False)
@@ -97,7 +66,7 @@ class FilmPoint(DiagramPoint):
         if self.special is None:
             return None
         point = self.special.point
-        return _family(point).film.displacement(point.x, self.special.mode)
+        return family_of(point).film.displacement(point.x, self.special.mode)
 
     def __repr__(self) -> str:
         """Return one line: branch, load, Morse index and what is special."""
@@ -106,26 +75,6 @@ class FilmPoint(DiagramPoint):
             f"<FilmPoint on branch {self.branch} at load {self.load:.6g}: "
             f"{self.point.stability.n_unstable} unstable{kind}>"
         )
-
-
-def _family(point: BranchPoint) -> FilmFamily:
-    """Return the family of a point of a film's branch: all of them have such a one."""
-    return cast(FilmFamily, point.family)
-
-
-def equilibrium(point: BranchPoint) -> Equilibrium:
-    """Return the equilibrium of a film at a point of one of its branches."""
-    family = _family(point)
-    problem, shape = family.problem, family.film.shape(point.x)
-    found = problem.equilibrium(shape, point.model.tensions, point.value, Status.CONVERGED)
-    classified = problem.classified(found)
-    return replace(classified, iterations=point.corrections, stability=point.stability)
-
-
-def family_near(problem: Problem, shape: Shape) -> tuple[FilmFamily, FloatArray]:
-    """Return the family good near a shape, and the shape's loop in its coordinates."""
-    film = problem.film.of_loop(problem.film.prepared(shape))
-    return FilmFamily(problem, film), film.project(shape.x_loop)
 
 
 def film_point(found: Equilibrium, problem: Problem, control: StepControl) -> BranchPoint:

@@ -60,8 +60,7 @@ def catalogue(
         if draw_catalogue(folder):
             drawn.append("catalogue.png")
     if not quiet:
-        if result.finished:
-            before(folder, len(result.rows), finished=True)
+        before(folder, result.before)
         _report(result, drawn)
     return 0
 

@@ -1,8 +1,5 @@
-from .catalogue import (
-    Catalogue as Catalogue,
-    read_catalogue as read_catalogue,
-    run_catalogue as run_catalogue,
-)
+from .catalogue import run_catalogue as run_catalogue
+from .catalogue_table import Catalogue as Catalogue, read_catalogue as read_catalogue
 from .cell_kind import cell_state as cell_state
 from .cell_runs import (
     CellRun as CellRun,

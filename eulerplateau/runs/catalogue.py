@@ -2,43 +2,22 @@
 
 from __future__ import annotations
 
-import csv
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from eulerplateau.branches import Entry, Plan, catalogue_at
-from eulerplateau.errors import OutputError, SpecError
+from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import write_whole
-from eulerplateau.runs.folder import read_summary
-from eulerplateau.runs.kinds import FILM
+from eulerplateau.runs.catalogue_table import COUNT_COLUMNS, Catalogue, read_counts
+from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.loads import in_order
-from eulerplateau.runs.recording import Opening, make_mesh, recording
+from eulerplateau.runs.recording import Opening, recording
 from eulerplateau.runs.rows import CatalogueRow
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.table import read_rows, table_content
+from eulerplateau.runs.table import table_content
 from eulerplateau.solvers import Problem
-
-COUNT_COLUMNS = "load", "search", "by_starts", "by_deflation", "together"
-
-
-@dataclass(frozen=True)
-class Catalogue:
-    """What a catalogue came to; `finished` if an earlier call had come to it.
-
-    Attributes
-    ----------
-    counts : dictionaries of COUNT_COLUMNS
-        How many distinct equilibria so many searches of each kind had found.
-    """
-
-    folder: Path
-    rows: tuple[CatalogueRow, ...]
-    counts: tuple[dict[str, float], ...]
-    seconds: float
-    finished: bool = False
 
 
 def run_catalogue(
@@ -62,12 +41,14 @@ def run_catalogue(
     settings = spec.catalogue
     plan = Plan(settings.starts, settings.index, settings.distance, settings.seed)
     column = FILM_LOADS[spec.film.model].column
-    opening = Opening("catalogue", CatalogueRow, column, overwrite, resumable=False)
+    opening = Opening("catalogue", CatalogueRow, column, overwrite)
     counts: list[dict[str, float]] = []
     with recording(spec, disk, path, opening, started) as recorder:
         run = recorder.run
         if run.finished:
-            return Catalogue(path, tuple(run.rows), _read_counts(path), run.seconds, True)
+            return Catalogue(
+                path, tuple(run.rows), read_counts(path), run.seconds, True, run.before
+            )
         for load in catalogue_loads(spec):
             found = catalogue_at(problem, load, plan, lambda load=load: on_search(load))  # type: ignore[misc]
             for number, entry in enumerate(found):
@@ -82,7 +63,9 @@ def run_catalogue(
                     first_guess=min(entry.guesses, default=None),
                 )
             counts += _counted(load, found, plan.starts)
-            write_whole(path / "counts.csv", table_content(COUNT_COLUMNS, counts))
+            write_whole(
+                run.folder.path / "counts.csv", table_content(COUNT_COLUMNS, counts)
+            )
         run.totals |= {"equilibria": len(run.rows)}
     return Catalogue(path, tuple(run.rows), tuple(counts), run.seconds)
 
@@ -104,23 +87,3 @@ def _counted(load: float, found: Sequence[Entry], searches: int) -> list[dict[st
         | {name: sum(first <= number for first in all_) for name, all_ in firsts.items()}
         for number in range(1, searches + 1)
     ]
-
-
-def read_catalogue(folder: Path) -> Catalogue:
-    """Read a folder that `run_catalogue` has written; raises OutputError."""
-    column = FILM.load(read_summary(folder)).column
-    rows = read_rows(folder / "catalogue.csv", CatalogueRow, column)
-    return Catalogue(folder, tuple(rows), _read_counts(folder), 0.0, True)
-
-
-def _read_counts(folder: Path) -> tuple[dict[str, float], ...]:
-    """Read counts.csv of a folder; raises OutputError if it cannot be read."""
-    path = folder / "counts.csv"
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            lines = list(csv.DictReader(file))
-        return tuple({name: float(line[name]) for name in COUNT_COLUMNS} for line in lines)
-    except OSError as error:
-        raise OutputError(path, f"cannot be read: {error.strerror}") from None
-    except (KeyError, ValueError, TypeError):
-        raise OutputError(path, "is no table of counts") from None

@@ -40,7 +40,7 @@ _FEW = 200
 # In run.json: without it a folder is not ours, and nothing in it is ever removed.
 _MARK = {"program": "eulerplateau"}
 WRITER = ".writer"
-TABLES = "sweep", "branches"
+TABLES = "sweep", "branches", "catalogue"
 # In a folder that holds another run: where one that replaces it has its first row.
 _NEW = ".new"
 _OUR_FILES = (

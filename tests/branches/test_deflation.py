@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.branches.deflation import deflated, factor, newton, search, towards_index
-from eulerplateau.branches.films import family_near
+from eulerplateau.branches.film_family import family_near
 from eulerplateau.branches.likeness import likeness
 from eulerplateau.solvers import Problem, solve, tangent_model
 from tests.helpers.shapes import disk_points, mesh_of

@@ -12,12 +12,8 @@ import pytest
 from eulerplateau.errors import ConflictError, SpecError
 from eulerplateau.mesh import write_mesh
 from eulerplateau.pictures import draw_catalogue
-from eulerplateau.runs.catalogue import (
-    COUNT_COLUMNS,
-    Catalogue,
-    read_catalogue,
-    run_catalogue,
-)
+from eulerplateau.runs.catalogue import run_catalogue
+from eulerplateau.runs.catalogue_table import COUNT_COLUMNS, Catalogue, read_catalogue
 from eulerplateau.runs.rows import CatalogueRow
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.sweep import run_sweep

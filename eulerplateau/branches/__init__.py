@@ -11,8 +11,8 @@
                     (deflation.py), told apart by likeness.py
     symmetry.py     which symmetries a mode breaks; scaling.py: exponents at an onset
 
-Only the two of films, catalogue.py and likeness.py know films: any `Family` of energies of
-a loop can be followed.
+Only films.py, film_family.py and catalogue.py know films: any `Family` of energies of a
+loop can be followed.
 """
 
 import lazy_loader

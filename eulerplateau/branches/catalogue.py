@@ -23,8 +23,8 @@ from eulerplateau.branches.deflation import (
     search,
     towards_index,
 )
-from eulerplateau.branches.film_family import equilibrium, family_near
-from eulerplateau.branches.likeness import Likeness, likeness
+from eulerplateau.branches.film_family import equilibrium, family_near, likeness_of
+from eulerplateau.branches.likeness import Likeness
 from eulerplateau.branches.point import BranchPoint, point_near
 from eulerplateau.branches.symmetry import OPERATIONS, loop_symmetries
 from eulerplateau.loop import Loop, close_with_lengths
@@ -103,7 +103,7 @@ def catalogue_at(
     Those of Morse index up to plan.index that the mesh resolves. `searched` is called after
     each of the 2 plan.starts searches.
     """
-    finder = _Finder(problem, load, plan, likeness(problem, plan.distance), searched)
+    finder = _Finder(problem, load, plan, likeness_of(problem, plan.distance), searched)
     with one_thread():
         return finder.merged(finder.by_starts(), finder.by_deflation())
 

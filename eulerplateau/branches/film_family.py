@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
+import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import LoopEnergy
@@ -66,3 +68,14 @@ def family_near(problem: Problem, shape: Shape) -> tuple[FilmFamily, FloatArray]
     """Return the family good near a shape, and the shape's loop in its coordinates."""
     film = problem.film.of_loop(problem.film.prepared(shape))
     return FilmFamily(problem, film), film.project(shape.x_loop)
+
+
+def likeness_of(problem: Problem, within: float) -> Likeness:
+    """Return which loops of a film are the same, up to a distance at rest: see likeness."""
+    rest = problem.disk.x[problem.disk.loop]
+    # Of a round loop sliding is a rotation: a long one is asked whether it costs nothing.
+    centred = rest - rest.mean(axis=0)
+    axis = np.linalg.svd(centred, full_matrices=False)[2][0]
+    long = rest + np.outer(centred @ axis, axis)
+    slides = problem.film.slide(problem.loop, long) is not None
+    return likeness(problem.loop, rest, slides, within)

@@ -13,7 +13,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.branches.symmetry import numberings
-from eulerplateau.solvers import Problem
+from eulerplateau.loop import Loop
 
 # Points are numbered alike after 1/2, 1/3, 1/4, 1/6 and 1/12 of the way round.
 _DIVISIBLE = 12
@@ -126,31 +126,24 @@ def _slid(copy: FloatArray, a: FloatArray) -> FloatArray:
     return copy + slid * along
 
 
-def likeness(problem: Problem, within: float) -> Likeness:
-    """Return which loops of a film are the same.
+def likeness(loop: Loop, rest: FloatArray, slides: bool, within: float) -> Likeness:
+    """Return which loops are the same.
 
+    Parameters
+    ----------
+    rest : (n, 3) float, the loop at rest
+    slides : bool, whether it slides along itself for nothing
     within : float
-        The r.m.s. distance, in units of L, up to which a numbering of a tied film's loop
-        at rest brings it back onto itself.
+        If not, the r.m.s. distance, in units of L, up to which a numbering brings it back
+        onto itself at rest.
     """
-    rest = problem.disk.x[problem.disk.loop]
-    # Of a round loop sliding is a rotation: a long one is asked whether it costs nothing.
-    long = rest + np.outer(*_longest(rest))
-    slides = problem.film.slide(problem.loop, long) is not None
     # From its farthest vertex: a mirror of a polygon goes through a corner.
     first = int(np.linalg.norm(rest - rest.mean(axis=0), axis=1).argmax())
-    points = _evenly(problem.loop.rest_lengths, first)
+    points = _evenly(loop.rest_lengths, first)
     every = numberings(len(points))
     if slides:
         return Likeness(points, every, slides)
     return Likeness(points, _symmetries(points @ rest, every, within), slides)
-
-
-def _longest(rest: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return how far points (m, 3) lie along their longest axis, and that axis (3,)."""
-    centred = rest - rest.mean(axis=0)
-    axis: FloatArray = np.linalg.svd(centred, full_matrices=False)[2][0]
-    return centred @ axis, axis
 
 
 def _symmetries(rest: FloatArray, every: IntArray, within: float) -> IntArray:

@@ -44,15 +44,8 @@ TABLES = "sweep", "branches", "catalogue"
 # In a folder that holds another run: where one that replaces it has its first row.
 _NEW = ".new"
 _OUR_FILES = (
-    "sweep.csv",
-    "sweep.pvd",
-    "catalogue.csv",
-    "catalogue.pvd",
-    "catalogue.png",
+    *(f"{table}.{form}" for table in TABLES for form in ("csv", "pvd", "png")),
     "counts.csv",
-    "branches.csv",
-    "branches.pvd",
-    "branches.png",
     SPECIAL,
     *CHECKPOINTS,
     "diagram.png",

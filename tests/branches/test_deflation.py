@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.branches.deflation import deflated, factor, newton, search, towards_index
-from eulerplateau.branches.film_family import family_near
-from eulerplateau.branches.likeness import likeness
+from eulerplateau.branches.film_family import family_near, likeness_of
 from eulerplateau.solvers import Problem, solve, tangent_model
 from tests.helpers.shapes import disk_points, mesh_of
 
@@ -59,7 +58,7 @@ def test_newton_next_to_an_equilibrium_that_is_known_turns_away_from_it() -> Non
     found = solve(problem, load)
     assert found.converged
     family, x = family_near(problem, found.shape)
-    same = likeness(problem, 0.01)
+    same = likeness_of(problem, 0.01)
     model = tangent_model(family.energy(load), x)
     moved = model.displacement(model.eigen[1][:, 0])
     start = family.energy(load).constraint.project(x + 1e-3 * moved)
@@ -81,7 +80,7 @@ def test_climbing_along_soft_modes_comes_back_to_a_saddle_of_that_index() -> Non
     # 16 pi^3 n^2 (n^2 - 1) / (n^2 - n - 1): 5953 for n = 2 is below, 7144 for n = 3 above.
     load = 6500.0
     family, x = family_near(problem, problem.disk.shape)
-    same = likeness(problem, 0.01)
+    same = likeness_of(problem, 0.01)
     flat = search(family, x, load, newton)
     assert flat is not None
     index = flat.stability.n_unstable

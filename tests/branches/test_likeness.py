@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.likeness import Likeness, likeness
+from eulerplateau.branches.film_family import likeness_of
+from eulerplateau.branches.likeness import Likeness
 from eulerplateau.loop import project_lengths
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem
@@ -36,7 +37,7 @@ def bent(problem: Problem, seed: int = 1) -> FloatArray:
 
 def same(film: str, disk: Disk | None = None) -> tuple[Problem, Likeness]:
     problem = Problem(oval() if disk is None else disk, film)
-    return problem, likeness(problem, WITHIN)
+    return problem, likeness_of(problem, WITHIN)
 
 
 @pytest.mark.parametrize("film", ["springs", "area"])

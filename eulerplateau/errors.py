@@ -7,10 +7,19 @@ class EulerPlateauError(Exception):
     """Base of every error a user can cause; `exit_code` is what the shell sees.
 
     The arguments of a subclass are those of the exception, so that it survives pickling
-    on its way out of a worker process.
+    on its way out of a worker process. Its text is one line that any terminal can show,
+    whatever the names in it are.
     """
 
     exit_code = 1
+
+    def __str__(self) -> str:
+        """Return what is wrong; what cannot be printed in a line is escaped."""
+        said = self._text()
+        return "".join(c if c.isprintable() else repr(c)[1:-1] for c in said)
+
+    def _text(self) -> str:
+        return super().__str__()
 
 
 class SpecError(EulerPlateauError):
@@ -26,7 +35,7 @@ class SpecError(EulerPlateauError):
         super().__init__(key, problem)
         self.key = key
 
-    def __str__(self) -> str:
+    def _text(self) -> str:
         return "{}: {}".format(*self.args)
 
 
@@ -46,7 +55,7 @@ class MeshError(EulerPlateauError):
         self.kind = kind
         self.index = index
 
-    def __str__(self) -> str:
+    def _text(self) -> str:
         kind, index, problem = self.args
         return f"{kind}: {problem}" if index is None else f"{kind} {index}: {problem}"
 
@@ -60,7 +69,7 @@ class OutputError(EulerPlateauError):
         super().__init__(path, problem)
         self.path = path
 
-    def __str__(self) -> str:
+    def _text(self) -> str:
         return "{}: {}".format(*self.args)
 
 
@@ -76,7 +85,7 @@ class ConflictError(EulerPlateauError):
         super().__init__(path, keys, writer)
         self.keys = keys
 
-    def __str__(self) -> str:
+    def _text(self) -> str:
         path, keys, writer = self.args
         if writer:
             return f"{path}: {writer} is writing to it: wait for its end, or name another"

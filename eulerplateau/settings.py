@@ -69,7 +69,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     try:
         # Some editors begin a file with a mark of its byte order.
         return tomllib.loads(text.decode("utf-8-sig"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise SpecError(str(path), f"is not valid TOML: {error}") from None
 
 
@@ -80,9 +80,14 @@ def validate(data: Mapping[str, Any], model: type[Model], source: str) -> Model:
     or a word for where the data came from) if the data as a whole is wrong.
     """
     try:
+        content = json.dumps(data, default=_plain)
+    except (ValueError, RecursionError) as error:
+        # Thousands of digits in a number, or of brackets in each other.
+        raise SpecError(source, f"cannot be read: {error}") from None
+    try:
         # JSON is the mode in which strict pydantic still takes lists for tuples and
         # strings for enumerations, which is all that TOML can offer.
-        return model.model_validate_json(json.dumps(data, default=_plain))
+        return model.model_validate_json(content)
     except ValidationError as error:
         raise _spec_error(error.errors(include_url=False), data, model, source) from None
     except SpecError as error:

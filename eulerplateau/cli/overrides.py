@@ -19,7 +19,7 @@ def parse_setting(text: str) -> tuple[str, list[Any]]:
         raise click.BadParameter(f"{text!r} should be KEY=VALUE,...", param_hint="--set")
     try:
         values = tomllib.loads(f"values = [{given}]")["values"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):  # no TOML, or more of it than can be read
         values = given.split(",")
     if not values or "" in values:
         raise click.BadParameter(f"{text!r} should give a value", param_hint="--set")

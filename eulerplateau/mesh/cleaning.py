@@ -55,9 +55,9 @@ def merged(
     passes itself, or touches itself in a point, its vertices stay apart. Triangles that
     lose a side are left out; `kept` (n,) are the numbers of the others in `triangles`.
     """
-    place = _places(points, tolerance)
+    used, corner = np.unique(triangles, return_inverse=True)
     # For fans it counts where corners are, not which vertices they were.
-    there = place[triangles]
+    there = _places(points[used], tolerance)[corner.reshape(-1, 3)]
     kept = np.flatnonzero((there != np.roll(there, 1, axis=1)).all(axis=1))
     corners = there[kept]
     fan = _fans(corners)
@@ -102,7 +102,10 @@ def _places(points: FloatArray, tolerance: float) -> IntArray:
     if tolerance == 0.0:
         _, place = np.unique(points, axis=0, return_inverse=True)
         return np.asarray(place.ravel(), dtype=np.int64)
-    near = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+    # A power of two takes squares out of reach of overflow, and rounds nothing.
+    exponent = -int(np.frexp(np.abs(points).max())[1])
+    tree = cKDTree(np.ldexp(points, exponent))
+    near = tree.query_pairs(float(np.ldexp(tolerance, exponent)), output_type="ndarray")
     joined = coo_array((np.ones(len(near)), near.T), shape=(len(points),) * 2)
     place = connected_components(joined, directed=False)[1]
     return np.asarray(place, dtype=np.int64)

@@ -26,14 +26,14 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the cell's adhesions, its edges, and its constants; not what is varied."""
     try:
         cell = about["spec"]["cell"]
-        where = cell["points"] or f"{cell['adhesions']} adhesions"
+        where = str(cell["points"] or f"{cell['adhesions']} adhesions")
         edges = f"{cell['edges_per_side']} edges a side"
         constants = (
             "" if name == _parameter(about).column else f"{name} {cell[name]:g}"
             for name in ("sigma_hat", "ks_hat", "beta_hat")
         )
         return where, edges, *constants
-    except (KeyError, TypeError):
+    except (KeyError, TypeError, ValueError):
         return "", "", "", "", ""
 
 

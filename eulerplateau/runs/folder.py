@@ -39,6 +39,7 @@ _FEW = 200
 
 # In run.json: without it a folder is not ours, and nothing in it is ever removed.
 _MARK = {"program": "eulerplateau"}
+_SECTIONS = "spec", "mesh", "totals"
 WRITER = ".writer"
 TABLES = "sweep", "branches", "catalogue"
 # In a folder that holds another run: where one that replaces it has its first row.
@@ -271,7 +272,7 @@ def check_is_run(path: Path) -> None:
     """Raise OutputError for a folder with files that is no run."""
     ours = WRITER, _NEW
     files = [file.name for file in path.iterdir() if not file.name.startswith(ours)]
-    if files and not _is_run(path):
+    if files and not read_summary(path).items() >= _MARK.items():
         problem = "holds something else than a run: name an empty or a new folder"
         raise OutputError(path, problem)
 
@@ -282,14 +283,13 @@ def _remove_run(path: Path) -> None:
             file.unlink()
 
 
-def _is_run(path: Path) -> bool:
-    return read_summary(path).items() >= _MARK.items()
-
-
 def read_summary(path: Path) -> Mapping[str, Any]:
-    """Return what the run.json of a folder says; empty if there is none or a broken one."""
-    try:
-        summary = json.loads((path / "run.json").read_bytes())
-    except (OSError, ValueError):
-        return {}
-    return summary if isinstance(summary, dict) else {}
+    """Return what the run.json of a folder says; empty if there is none or a broken one.
+
+    What should be a section and is none is left out.
+    """
+    # Anything but an object has no items.
+    with suppress(OSError, ValueError, RecursionError, AttributeError):
+        said = json.loads((path / "run.json").read_bytes()).items()
+        return {k: v for k, v in said if k not in _SECTIONS or isinstance(v, dict)}
+    return {}

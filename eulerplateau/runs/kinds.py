@@ -53,7 +53,7 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
     """Return what run.json says of the film, of the mesh's size and of the solver."""
     try:
         film, solver = about["spec"]["film"]["model"], about["spec"]["solver"]["name"]
-        return film, f"{about['mesh']['vertices']} vertices", solver
+        return str(film), f"{about['mesh']['vertices']} vertices", str(solver)
     except (KeyError, TypeError):
         return "", "", ""
 

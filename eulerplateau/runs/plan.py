@@ -44,9 +44,11 @@ def planned(
     for path in specs:
         for combination in combinations:
             overrides = dict(zip(keys, combination, strict=True))
+            # First: a folder is named by values that are right.
+            spec = load_with(path, overrides, read)
             name = run_name(path, overrides)
             folder = path.parent / name if out is None else out / name if count > 1 else out
-            runs.append((load_with(path, overrides, read), folder))
+            runs.append((spec, folder))
     taken: set[Path] = set()
     for _, folder in runs:
         if folder in taken:

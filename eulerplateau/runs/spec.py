@@ -259,7 +259,12 @@ def located(data: dict[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def at_home(key: str, file: str) -> Path:
-    """Return the path of a file, `~` being the home directory; SpecError if it has none."""
+    """Return the path of a file, `~` being the home directory.
+
+    Raises SpecError if nobody has that home, or no file can have the name.
+    """
+    if "\0" in file:
+        raise SpecError(key, f"found {file!r}; a file's name holds no NUL")
     try:
         return Path(file).expanduser()
     except RuntimeError:

@@ -125,8 +125,9 @@ def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictErro
 
 def _neutral(run: OpenRun[Row]) -> list[int]:
     """Return the numbers of the rows kept that are neutral."""
-    if run.finished:
-        return [int(step) for step in run.about.get("totals", {}).get("neutral", [])]
+    told = run.about.get("totals", {}).get("neutral")
+    if run.finished and isinstance(told, list):
+        return [step for step in told if isinstance(step, int)]
     states = (read_state(run.folder.path / shape_name(row.step))[1] for row in run.rows)
     flags = [bool(state.get("n_neutral", np.zeros(1))[0]) for state in states]
     return [row.step for row, flag in zip(run.rows, flags, strict=True) if flag]

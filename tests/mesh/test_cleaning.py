@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
@@ -101,6 +103,18 @@ def test_vertices_that_coincide_nearly_are_merged_with_a_line_and_no_farther():
     assert any("within 1e-06 of the size" in line for line in lines)
     with pytest.raises(MeshError, match="pieces"):
         as_disk(places + 1e-4 * noise, soup, "file")
+
+
+@pytest.mark.parametrize("power", [-900, 0, 900])
+def test_near_vertices_are_merged_in_any_unit_whatever_else_lies_about(power):
+    """Squares of such distances overflow; a vertex that no triangle uses may be nowhere."""
+    soup = np.arange(TRIANGLES.size).reshape(-1, 3)
+    places = POINTS[TRIANGLES.ravel()]
+    near = places + 1e-8 * np.random.default_rng(1).standard_normal(places.shape)
+    given = np.vstack([np.ldexp(near, power), np.full(3, np.nan)])
+    found, lines = as_disk(given, soup, "file")
+    assert_same(found, replace(KNOWN, length=np.ldexp(KNOWN.length, power)), digits=1e-7)
+    assert len(lines) == 1
 
 
 def crossing_eight() -> tuple[np.ndarray, np.ndarray]:

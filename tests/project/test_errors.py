@@ -14,6 +14,14 @@ ERRORS = [
 ]
 
 
+@pytest.mark.parametrize("make", [SpecError, OutputError])
+def test_names_that_are_no_line_are_escaped(make):
+    """Keys may be quoted in TOML, and files may be called anything."""
+    said = str(make("a\nb\x1b[2Jµ\udc80", "is\u2028wrong"))
+    assert said == "a\\nb\\x1b[2Jµ\\udc80: is\\u2028wrong"
+    said.encode()
+
+
 @pytest.mark.parametrize(("error", "code"), ERRORS)
 def test_errors_survive_pickling_with_their_attributes(error, code):
     copy = pickle.loads(pickle.dumps(error))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +14,8 @@ import pytest
 from eulerplateau.errors import EulerPlateauError, MissingLibraryError, OutputError
 from eulerplateau.film.load import SPRING_LOAD, TENSION
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.runs.folder import shape_name
+from eulerplateau.runs.continuing import differences
+from eulerplateau.runs.folder import read_summary, shape_name
 from eulerplateau.runs.record import Run, read_run, read_runs
 from eulerplateau.runs.rows import COLUMNS, BranchRow, columns
 from eulerplateau.runs.series import read_legs
@@ -50,6 +52,41 @@ def test_a_run_prints_in_a_line_that_says_what_it_is(sweep: Path, branches: Path
         assert "\n" not in repr(run)
         for word in words:
             assert word in repr(run)
+
+
+def broken(value: Any, *keys: str) -> dict[str, Any]:
+    """What a run.json says, but for one value."""
+    spec = {"film": {"model": "springs"}, "solver": {"name": "newton"}}
+    about: dict[str, Any] = {"spec": spec, "mesh": {"vertices": 61}, "totals": {}}
+    place = about
+    for key in keys[:-1]:
+        place = place[key]
+    place[keys[-1]] = value
+    return about
+
+
+@pytest.mark.parametrize("value", [None, [], ["area"], {}, "x", 1, 1e308])
+@pytest.mark.parametrize(
+    "keys",
+    [
+        ("spec",), ("mesh",), ("totals",), ("spec", "film"), ("spec", "film", "model"),
+        ("spec", "solver", "name"), ("mesh", "vertices"), ("totals", "neutral"),
+    ],
+)  # fmt: skip
+def test_a_run_whose_summary_says_nonsense_is_read_all_the_same(
+    sweep: Path, branches: Path, value: Any, keys: tuple[str, ...]
+) -> None:
+    (sweep / "run.json").write_text(json.dumps(broken(value, *keys)))
+    one, other = read_runs([sweep, branches])
+    assert "\n" not in repr(one)
+    assert len({one.label, other.label}) == 2
+    assert differences(read_summary(sweep), broken("dirichlet", "spec", "film", "model"))
+
+
+@pytest.mark.parametrize("content", ["[" * 100_000, "[1]", "1", "\x00"])
+def test_a_summary_that_is_none_says_nothing(sweep: Path, content: str) -> None:
+    (sweep / "run.json").write_text(content)
+    assert read_summary(sweep) == {}
 
 
 def test_a_run_in_progress_or_without_rows_prints_too(sweep: Path) -> None:

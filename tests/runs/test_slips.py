@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from eulerplateau.cli.overrides import parse_setting
 from eulerplateau.errors import SpecError
 from eulerplateau.mesh import generate
 from eulerplateau.mesh.spec import MeshSpec
@@ -107,6 +108,32 @@ def test_more_corners_than_vertices_are_refused_at_once():
     polygon = {"kind": "regular", "sides": 9_000}
     with pytest.raises(SpecError, match="the polygon alone has 9000"):
         generate(MeshSpec(polygon=polygon, vertices=500))
+
+
+# More digits than Python reads, or writes; more brackets than it follows.
+ENDLESSLY_LONG = ["1" * 5000, "0x" + "f" * 5000, "[" * 3000 + "]" * 3000]
+
+
+@pytest.mark.parametrize("value", ENDLESSLY_LONG)
+def test_numbers_and_lists_without_end_are_told_in_a_line(run, value):
+    assert len(mistake(run, TEXT.replace("[1]", value))) < 300
+    run.write_text(TEXT)
+    settings = [parse_setting(f"sweep.loads={value}")]
+    with pytest.raises(SpecError) as caught:
+        planned([run], settings, None, load_run)
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 300
+
+
+def test_a_name_that_no_file_has_is_refused(run):
+    said = mistake(run, TEXT.replace("disk.vtp", "disk\\u0000.vtp"))
+    assert said.startswith("mesh.file: ")
+
+
+def test_bytes_that_are_no_text_are_refused_where_they_are_no_value(run):
+    """As the shell hands them on; long, so that the folder's name takes a digest of it."""
+    with pytest.raises(SpecError):
+        planned([run], [("solver.name", ["\udc80" * 50])], None, load_run)
 
 
 @pytest.mark.parametrize(

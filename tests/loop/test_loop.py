@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eulerplateau.loop.loop import Loop
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.loop import Loop, strands_meet
 from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes, twins
 
@@ -93,3 +94,19 @@ def test_curvature_of_a_regular_polygon_is_exact() -> None:
         matrix = Loop(np.full(n, 1 / n)).bending_matrix
         per_vertex = (x * (matrix @ x)).sum()
         assert per_vertex == pytest.approx((2 * n * np.sin(np.pi / n)) ** 2, rel=1e-12)
+
+
+def wedge(degrees: float) -> FloatArray:
+    """An isosceles triangle in edges of about 1, forty on each leg."""
+    apex = np.radians(degrees)
+    ends = 40 * np.array([[np.cos(apex / 2), np.sin(apex / 2)]]) * [[1.0, -1.0], [1.0, 1.0]]
+    corners = [np.zeros(2), *ends, np.zeros(2)]
+    counts = [40, round(80 * np.sin(apex / 2)), 40]
+    sides = zip(corners, corners[1:], counts, strict=False)
+    return np.concatenate([np.linspace(a, b, m, endpoint=False) for a, b, m in sides])
+
+
+def test_a_sharp_corner_is_no_meeting_of_strands_and_a_needle_is() -> None:
+    """Three edges from the corner its sides are 6 sin(apex / 2) edges apart."""
+    assert not strands_meet(wedge(25.0))
+    assert strands_meet(wedge(15.0))

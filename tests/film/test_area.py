@@ -220,3 +220,35 @@ def test_triangles_without_area_have_no_normal_and_no_pull(
     assert not sides.normals.any()
     assert not sides.cotangent.any()
     assert not tiling.gradient(sides).any()
+
+
+def test_normals_at_vertices_do_not_depend_on_how_a_triangle_is_cut(
+    oval: Disk, tiling: Tiling, x: FloatArray
+) -> None:
+    """Weighted by areas: two halves of a triangle count as it does, there and elsewhere."""
+    i, j, k = tiling.triangles[7]
+    new = oval.n_v
+    halves = [[i, j, new], [i, new, k]]
+    # A vertex in the middle of a side, which the triangle beyond does not see.
+    cut = Tiling(
+        np.vstack([np.delete(tiling.triangles, 7, axis=0), halves]),
+        tiling.loop,
+        np.append(tiling.interior, new),
+    )
+    there = np.vstack([x, 0.5 * (x[j] + x[k])])
+    whole = tiling.vertex_normals(tiling.sides(x))
+    halved = cut.vertex_normals(cut.sides(there))
+    np.testing.assert_allclose(halved[[i]], whole[[i]], atol=1e-13)
+    others = np.setdiff1d(np.arange(oval.n_v), [i, j, k])
+    np.testing.assert_array_equal(halved[others], whole[others])
+
+
+def test_film_of_a_loop_is_near_the_shape_that_is_asked_for(oval: Disk) -> None:
+    """Also where another shape on the same triangles came just before."""
+    made = area(oval)
+    for size in (0.0, 0.01, 0.02, 0.01):
+        shape = oval.shape.moved(shapes.crumpled(oval, size))
+        reached = made.of_loop(made.prepared(shape)).reference
+        np.testing.assert_array_equal(reached.x_loop, shape.x_loop)
+    shape = made.prepared(oval.shape)
+    assert made.of_loop(shape) is made.of_loop(shape)

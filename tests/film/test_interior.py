@@ -184,3 +184,15 @@ def test_loop_that_folds_the_film_over_is_refused(local: LocalFilm) -> None:
         local.relax(mirrored)
     # It is none the worse for it.
     assert local.relax(x_loop).area > 0
+
+
+def test_film_holds_until_it_has_tilted_by_26_degrees(local: LocalFilm) -> None:
+    """The cosine is 0.9 then, wherever the axis lies in the film."""
+    normal = local.tiling.sides(local.x).normals.mean(axis=0)
+    along = np.cross(normal, [1.0, 0.0, 0.0])
+    k = along / np.linalg.norm(along)
+    cross = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+    for degrees, holds in ((0.0, True), (15.0, True), (40.0, False), (80.0, False)):
+        angle = np.radians(degrees)
+        turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+        assert local.holds(local.tiling.sides(local.x @ turn.T)) is holds

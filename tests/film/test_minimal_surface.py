@@ -181,3 +181,12 @@ def test_branch_that_leaves_the_plane_is_of_discrete_minimal_surfaces() -> None:
         assert np.abs(problem.without_sliding(shape, forces)).max() < 1e-8 * scale
         curved += not is_flat(tiling, shape.x)
     assert curved > 5
+
+
+@pytest.mark.parametrize(("slope", "flat"), [(1e-8, True), (1e-5, False), (1e-3, False)])
+def test_film_is_flat_as_far_as_its_triangles_do_not_tilt(
+    oval: Disk, slope: float, flat: bool
+) -> None:
+    """Wherever its plane lies: the slope is that of a fold across the middle."""
+    x = oval.x + np.outer(slope * np.abs(oval.x[:, 0]), [0.0, 0.0, 1.0])
+    assert is_flat(tiling_of(oval), x @ shapes.rotation().T) is flat

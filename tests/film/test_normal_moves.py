@@ -118,3 +118,19 @@ def test_hessian_is_the_forces_derivative_to_second_order_in_the_mesh(
         gaps.append(abs(found / curvature - 1))
     order = shapes.fitted_order([1 / number for number in rings], gaps)
     assert order == pytest.approx(2.0, abs=0.2)
+
+
+def test_strip_that_follows_the_loop_ends_smoothly() -> None:
+    """Of a film a third of L across a tenth of L follows: wholly at the loop, and towards
+    the strip's end as the square of what is left of its width."""
+    mesh = shapes.mesh_of(*shapes.disk_points(40))
+    weight = made_at(mesh, mesh.x).variations.weight
+    assert (weight[mesh.loop] == 1).all()
+    gap = mesh.x[mesh.interior][:, None] - mesh.x[mesh.loop][None]
+    left = 1 - np.linalg.norm(gap, axis=2).min(axis=1) / 0.1
+    inside = weight[mesh.interior]
+    assert (inside[left <= 0] == 0).all()
+    assert (inside[left > 1e-9] > 0).all()
+    ends = (left > 0) & (left < 0.2)
+    assert ends.any()
+    assert (inside[ends] < 0.2 * left[ends]).all()

@@ -102,8 +102,8 @@ def test_obtuse_rest_triangles_have_negative_weights_in_a_film_never_negative() 
 
 
 @pytest.mark.parametrize("shape", ["cap", "needle"])
-@pytest.mark.parametrize("thickness", [1e-4, 1e-6, 1e-8])
-def test_slivers_of_aspect_ratio_up_to_1e8_leave_the_dirichlet_film_alone(
+@pytest.mark.parametrize("thickness", [1e-4, 1e-6, 1e-8, 4e-12])
+def test_slivers_that_are_not_refused_leave_the_dirichlet_film_alone(
     thickness: float, shape: str
 ) -> None:
     """A linear map is linear in a split triangle too: same energy to what rounding of a
@@ -119,7 +119,7 @@ def test_slivers_of_aspect_ratio_up_to_1e8_leave_the_dirichlet_film_alone(
     assert energy == pytest.approx(expected, rel=10 * 2.3e-16 / thickness)
 
 
-@pytest.mark.parametrize("thickness", [1e-13, 1e-15, 0.0])
+@pytest.mark.parametrize("thickness", [5e-13, 1e-15, 0.0])
 def test_triangle_without_a_shape_is_refused_before_it_has_weights(
     thickness: float,
 ) -> None:

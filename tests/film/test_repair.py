@@ -161,3 +161,21 @@ def test_film_is_carried_far_without_folding_over() -> None:
     assert (sides.normals[:, 2] > 0.999).all()
     assert sides.smallest_angle > 12
     assert sides.areas.sum() == pytest.approx(film.sides(x).areas.sum(), rel=1e-13)
+
+
+def cap(rings: int) -> tuple[Tiling, FloatArray]:
+    """Sheared triangles on a unit sphere, up to 46 degrees from its pole."""
+    film, x = sheared(rings)
+    angle = 0.8 * x[:, :2] / np.linalg.norm(x, axis=1).max()
+    size = np.linalg.norm(angle, axis=1)[:, None]
+    return film, np.column_stack([angle * np.sinc(size / np.pi), np.cos(size)])
+
+
+@pytest.mark.parametrize("rings", [6, 9, 13])
+def test_repair_slides_vertices_along_the_film(rings: int) -> None:
+    """None leaves a sphere by more than the chord of the longest edge does."""
+    film, x = cap(rings)
+    found, after = mend_triangles(film, x)
+    longest = np.linalg.norm(found.sides(after).edges, axis=2).max()
+    off = np.abs(np.linalg.norm(after, axis=1) - 1)
+    assert off.max() < longest**2 / 8

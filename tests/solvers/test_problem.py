@@ -45,6 +45,9 @@ def test_residual_is_the_imbalance_over_the_largest_of_the_three_forces(
     expected = np.abs(np.sum(forces, axis=0)).max() / largest
     residual = oval_problem.residual(oval.shape.moved(x), lam, LOAD)
     assert residual == pytest.approx(expected, rel=1e-9)
+    # Where tension is all there is nothing balances it.
+    residual = oval_problem.residual(oval.shape.moved(x), 1e9 * lam, LOAD)
+    assert residual == pytest.approx(1.0, rel=1e-6)
 
 
 def test_residual_vanishes_at_an_equilibrium_and_says_by_how_much_one_is_missed(

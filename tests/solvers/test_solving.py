@@ -86,3 +86,18 @@ def test_next_start_is_the_last_finite_shape_converged_or_not(
     for shape, tensions in starts[2:]:
         assert shape is found[1].shape
         assert tensions is found[1].tensions
+
+
+def test_an_equilibrium_brings_its_tensions_along_and_a_shape_none(
+    oval: Disk, oval_problem: Problem, pretend: Callable[[list[Status]], Starts]
+) -> None:
+    starts = pretend(5 * [Status.CONVERGED])
+    found = solving.solve(oval_problem, 2.0, oval.x)
+    solving.solve(oval_problem, 3.0, found)
+    solving.solve(oval_problem, 3.0, found.shape)
+    list(sweep(oval_problem, [3.0], found))
+    solving.solve(oval_problem, 3.0, found, tensions=2 * found.tensions)
+    told = [tensions for _, tensions in starts[1:]]
+    assert told[0] is told[2] is found.tensions
+    assert told[1] is None
+    np.testing.assert_array_equal(told[3], 2 * found.tensions)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -228,3 +230,16 @@ def test_error_bound_covers_what_a_rotation_changes_the_eigenvalues_by(
     allowed = 10 * here.error_bound + 1e-12 * np.abs(here.eigenvalues)
     assert (np.abs(here.eigenvalues - turned.eigenvalues) < allowed).all()
     assert here.error_bound < 1e-9 * here.eigenvalues[-1]
+
+
+@pytest.mark.parametrize(("residual", "balanced"), [(1e-7, True), (1e-5, False)])
+@pytest.mark.parametrize(("lowest", "end"), [(1.0, "CONVERGED"), (-1.0, "SADDLE")])
+def test_stall_in_balance_is_an_equilibrium_a_minimum_or_a_saddle(
+    residual: float, balanced: bool, lowest: float, end: str
+) -> None:
+    """And one out of balance is a stall, whatever its modes."""
+    problem = Problem(shapes.mesh_of(*shapes.disk_points(3)))
+    stalled = replace(solve(problem, 1.0), status=Status.STALLED, residual=residual)
+    found = with_stability(stalled, Stability(np.array([lowest, 10.0]), 1e-9))
+    assert found.status is (Status[end] if balanced else Status.STALLED)
+    assert found.n_unstable == int(lowest < 0)

@@ -72,6 +72,22 @@ def test_film_is_laid_anew_without_folds_on_the_same_loop() -> None:
     assert areas.sum() == pytest.approx(polygon_area(flat[folded.loop]), rel=1e-12)
 
 
+def test_film_across_a_loop_with_three_arms_in_space_is_laid_anew_and_mended() -> None:
+    """Even weights alone leave folds there, where the loop bends inwards."""
+    points, triangles = shapes.disk_points(4, jitter=0.1)
+    radius, angle = np.hypot(*points.T), np.arctan2(points[:, 1], points[:, 0])
+    height = 0.4 * radius**2 * np.cos(2 * angle)
+    points = points * (1 + 0.5 * np.cos(3 * angle))[:, None]
+    mesh = shapes.mesh_of(np.column_stack([points, height]), triangles)
+    thrown = mesh.x.copy()
+    size = (len(mesh.interior), 3)
+    thrown[mesh.interior] += np.random.default_rng(0).normal(0.0, 0.05, size)
+    assert is_folded(tiling_of(mesh), thrown)
+    tiling, x = laid_anew(tiling_of(mesh), thrown)
+    assert not is_folded(tiling, x)
+    np.testing.assert_array_equal(x[mesh.loop], mesh.x[mesh.loop])
+
+
 def test_film_that_lies_in_folds_is_not_called_converged() -> None:
     # Solvers lay such films anew: one has to be folded by hand.
     sound, folded = twins(4, 1.0, 0)

@@ -255,6 +255,17 @@ def test_iterations_grow_no_faster_than_the_root_of_the_number_of_vertices(
     assert np.polyfit(np.log(sizes), np.log(iterations), 1)[0] < 0.5
 
 
+def test_kick_is_no_rigid_motion_it_bends_the_middle_of_the_film(oval: Disk) -> None:
+    """A polynomial of degree two or more: at the centre it and its slope vanish."""
+    x_loop = oval.x[oval.loop]
+    away = np.array([[0.6, 0.8, 0.0], [0.8, -0.6, 0.0]])
+    near = [x_loop.mean(axis=0) + size * away for size in (0.0, 1e-4, 2e-4)]
+    x = np.vstack([*near, x_loop])
+    kick = smooth_kick(x_loop, x, np.random.default_rng(0), 2)[:, 2]
+    np.testing.assert_allclose(kick[:2], 0, atol=1e-18)
+    np.testing.assert_allclose(kick[4:6] / kick[2:4], 4, rtol=0.05)
+
+
 # Before and past each transition, and where a hexagon's saddle turns almost for nothing.
 @pytest.mark.slow
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.continuation import advance, follow
-from eulerplateau.branches.point import BranchPoint, along, parameter_slope
+from eulerplateau.branches.point import BranchPoint, along, correct, inner, parameter_slope
 from eulerplateau.branches.symmetry import loop_distance
 from eulerplateau.solvers import solve
 from tests.helpers import diagram
@@ -163,3 +163,20 @@ def test_no_step_where_there_is_no_branch(found: Diagram) -> None:
     start = found.branch(0)[0].point
     for step in (50.0, -50.0):
         assert advance(start, step, CONTROL) is None
+
+
+def test_branch_turns_by_no_more_than_37_degrees_from_point_to_point() -> None:
+    """A step round a fold that turns farther is refused, though it can be corrected."""
+    _, start, control = diagram.folding_branch()
+    point = advance(start, 0.1, control)
+    assert point is not None
+    ahead = []
+    for step in np.linspace(0.005, 0.03, 6):
+        guess = point.x + step * point.direction.displacement
+        value = point.value + step * point.direction.rate
+        after = correct(point.family, guess, value, point.direction, control)
+        assert after is not None
+        ahead.append(inner(after.model, point.direction, after.direction, control))
+        assert (advance(point, step, control) is None) == (ahead[-1] < 0.8)
+    assert min(ahead) < 0.7
+    assert max(ahead) > 0.9

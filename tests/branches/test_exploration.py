@@ -10,13 +10,20 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
-from eulerplateau.branches.point import BranchPoint
+from eulerplateau.branches.exploration import (
+    DiagramPoint,
+    Limits,
+    explore_from,
+    explore_on,
+)
+from eulerplateau.branches.point import BranchPoint, StepControl
+from eulerplateau.branches.progress import KeptPoint, Lead, Progress
 from eulerplateau.branches.special import SpecialPoint
 from eulerplateau.loop.motions import rigid_motions
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
-from tests.helpers import diagram
+from eulerplateau.solvers import Problem
+from tests.helpers import diagram, shapes
 from tests.helpers.diagram import CONTROL, Diagram
 
 
@@ -231,3 +238,29 @@ def length_rows(found: Diagram, x: FloatArray) -> FloatArray:
     for row, (v, w) in zip(rows, zip(loop, np.roll(loop, -1), strict=True), strict=True):
         row[v], row[w] = x[v] - x[w], x[w] - x[v]
     return rows.reshape(len(loop), -1)
+
+
+@pytest.mark.parametrize(("elsewhere", "known"), [(False, True), (True, False)])
+def test_special_points_of_one_load_are_told_apart_by_their_loops(
+    elsewhere: bool, known: bool
+) -> None:
+    """As on two branches that are mirror images of each other."""
+    problem = Problem(shapes.mesh_of(*shapes.hexagon_points(4)))
+    control = StepControl(window=(830.0, 845.0), unit=900.0)
+    start = diagram.stable_point(problem, 830.0, control)
+    lead = Lead(0, 0, KeptPoint.of(start), None)
+    limits = Limits(special_points=0)
+    onset = next(
+        visit.special
+        for visit in explore_on(Progress((lead,), order=1), control, limits)
+        if visit.special is not None
+    )
+    x = onset.point.x + shapes.wave(len(onset.point.x), 0.01) * elsewhere
+    progress = Progress((lead,), met=((x, onset.point.value),), order=1)
+    again = next(
+        visit
+        for visit in explore_on(progress, control, limits)
+        if visit.special is not None
+    )
+    assert again.known is known
+    assert again.number == int(not known)

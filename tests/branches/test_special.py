@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.between import Interval
 from eulerplateau.branches.continuation import advance, follow
 from eulerplateau.branches.point import BranchPoint, StepControl, along
 from eulerplateau.branches.special import (
@@ -21,7 +22,7 @@ from eulerplateau.branches.special import (
 from eulerplateau.branches.symmetry import OPERATIONS, loop_distance
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers.problem import Problem
-from tests.helpers import diagram
+from tests.helpers import diagram, shapes
 from tests.helpers.diagram import CONTROL, Diagram
 from tests.helpers.equilibria import planar
 from tests.helpers.shapes import fitted_order
@@ -147,6 +148,40 @@ def test_onset_of_the_hexagon_is_double(hexagon: Disk) -> None:
     assert onset.multiplicity == 2
     assert onset.n_unstable == 0
     assert onset.symmetry.transverse > 0.999
+
+
+@pytest.mark.parametrize(("stretch", "events"), [(1e-6, 1), (1e-4, 2)])
+def test_modes_lost_one_after_the_other_are_two_events(stretch: float, events: int) -> None:
+    """A stretched hexagon's, whose loads differ by a twentieth of the stretch."""
+    points, triangles = shapes.hexagon_points(4)
+    problem = Problem(shapes.mesh_of(points * [1 + stretch, 1.0], triangles))
+    control = StepControl(window=(830.0, 845.0), unit=900.0)
+    start = diagram.stable_point(problem, 830.0, control)
+    specials = specials_along(start, control)
+    assert [special.multiplicity for special in specials] == [3 - events] * events
+    assert [special.n_unstable for special in specials] == [*range(events)]
+    loads = [special.point.value for special in specials]
+    assert np.ptp(loads) < 0.1 * stretch * loads[0]
+
+
+def test_error_is_what_rounding_of_the_eigenvalue_can_move_the_load_by() -> None:
+    """The bound over how fast the eigenvalue falls with the load, and little more."""
+    points, triangles = shapes.hexagon_points(4)
+    problem = Problem(shapes.mesh_of(points * [1.05, 1.0], triangles))
+    control = StepControl(window=(700.0, 900.0), unit=900.0)
+    before = diagram.stable_point(problem, 700.0, control)
+    for after in follow(before, control):
+        found = list(special_points(before, after, control))
+        if found:
+            break
+        before = after
+    interval = Interval(before, after, control)
+    index = interval.crossing[0]
+    ends = [end.stability.eigenvalues[index] for end in (before, after)]
+    slope = (ends[1] - ends[0]) / (after.value - before.value)
+    bound = found[0].point.stability.error_bound
+    assert found[0].error >= 0.9 * bound / abs(slope)
+    assert found[0].error <= 3 * bound / abs(slope) + 1e-14 * after.value
 
 
 def test_first_mode_twists(onset: SpecialPoint) -> None:

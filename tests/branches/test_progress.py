@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -12,10 +13,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from eulerplateau.branches import Arrays, explore
+from eulerplateau.branches import Arrays, FilmFamily, StepControl, explore
+from eulerplateau.branches.progress import KeptPoint, Lead, Progress, progress_from
 from eulerplateau.cells import Cell, explore_cell, regular_sites
 from eulerplateau.mesh import Shape, read_disk
 from eulerplateau.solvers import Problem
+from tests.helpers.diagram import stable_point
+from tests.helpers.shapes import hexagon_points, mesh_of
 
 ROOT = Path(__file__).parents[2]
 
@@ -70,3 +74,44 @@ def test_exploration_goes_on_as_if_it_had_not_stopped(
             k += 1
         rest = exploration()(progress=kept[k])
         assert [told(point) for point in rest] == whole[k + 1 :]
+
+
+def test_last_point_beyond_doubt_is_kept_apart_from_the_last_one() -> None:
+    """With all else that a step depends on."""
+    mesh = mesh_of(*hexagon_points(4))
+    problem = Problem(mesh)
+    control = StepControl(window=(300.0, 700.0), unit=700.0)
+    points = [stable_point(problem, load, control) for load in (300.0, 400.0, 500.0)]
+    lead, before, here = (KeptPoint.of(point) for point in points)
+    progress = Progress(
+        leads=(Lead(1, 5, lead, 2),),
+        met=((lead.point.x, 300.0),),
+        order=6,
+        branch=3,
+        origin=1,
+        here=here,
+        before=before,
+        step=0.02,
+        left=17,
+    )
+    family = FilmFamily(problem, problem.film.of_loop(mesh.shape))
+    again = progress_from(from_file(progress.arrays()), family)
+    assert again.here is not None
+    assert again.before is not None
+    for kept, point in (
+        (again.here, here),
+        (again.before, before),
+        (again.leads[0].start, lead),
+    ):
+        assert kept.point.value == point.point.value
+        np.testing.assert_array_equal(kept.point.x, point.point.x)
+    assert (again.leads[0].n_unstable, again.leads[0].order, again.leads[0].origin) == (
+        1,
+        5,
+        2,
+    )
+    assert again.met[0][1] == 300.0
+    numbers = again.order, again.branch, again.origin, again.step, again.left
+    assert numbers == (6, 3, 1, 0.02, 17)
+    alone = progress_from(from_file(replace(progress, before=here).arrays()), family)
+    assert alone.before is alone.here

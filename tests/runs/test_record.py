@@ -89,6 +89,19 @@ def test_a_summary_that_is_none_says_nothing(sweep: Path, content: str) -> None:
     assert read_summary(sweep) == {}
 
 
+def test_loads_to_look_at_are_those_of_the_first_bent_films(
+    tmp_path: Path, mesh: Disk
+) -> None:
+    """Between the planar ones below and above, in whatever order they come."""
+    bends = {1.0: 0.0, 2.0: 0.01, 3.0: 0.6, 4.0: 1.0, 5.0: 0.4, 6.0: 0.0, 7.0: 0.3}
+    rows = [
+        replace(row_at(step, load), abs_kappa_n=bend)
+        for step, (load, bend) in enumerate(sorted(bends.items(), reverse=True))
+    ]
+    assert read_run(record(tmp_path / "run", mesh, rows)).between == (3.0, 5.0)
+    assert read_run(record(tmp_path / "flat", mesh, rows[-2:])).between is None
+
+
 def test_a_run_in_progress_or_without_rows_prints_too(sweep: Path) -> None:
     (sweep / "run.json").write_text('{"status": "interrupted"}')
     assert "interrupted" in repr(read_run(sweep))

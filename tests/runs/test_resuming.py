@@ -263,3 +263,16 @@ def test_finished_exploration_solves_for_nothing(
     monkeypatch.setattr("eulerplateau.runs.exploration.first_equilibrium", None)
     result = run_branches(spec, whole)
     assert (result.finished, len(result.special)) == (True, 1)
+
+
+def test_finished_sweep_tells_of_its_neutral_rows_again(tmp_path: Path) -> None:
+    """By what run.json says of them: nothing is computed."""
+    spec = sweep_of(tmp_path)
+    first = run_sweep(spec, tmp_path / "run")
+    about = json.loads((tmp_path / "run" / "run.json").read_text())
+    assert about["totals"]["neutral"] == list(first.neutral)
+    about["totals"]["neutral"] = [1]
+    (tmp_path / "run" / "run.json").write_text(json.dumps(about))
+    again = run_sweep(spec, tmp_path / "run")
+    assert again.finished
+    assert again.neutral == (1,)

@@ -20,7 +20,8 @@ from eulerplateau.mesh.triangles import directed_edges, joints
 def oriented(triangles: IntArray) -> tuple[IntArray, BoolArray]:
     """Return `triangles` (n_t, 3) alike in direction, and which (n_t,) were turned over.
 
-    In every piece that shared edges join, the fewer are turned. Edges of more than two
+    In every piece that shared edges join, the fewer are turned; of as many those that
+    disagree with the first. Edges of more than two
     triangles join nothing. Raises MeshError of a surface with one side only.
     """
     n = len(triangles)

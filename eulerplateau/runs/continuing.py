@@ -90,7 +90,7 @@ def look(
     """
     about = read_summary(path)
     table = path / f"{name}.csv"
-    lines = table.read_bytes().split(b"\n")[:-1] if table.is_file() else []
+    *lines, cut = table.read_bytes().split(b"\n") if table.is_file() else [b""]
     rows = _whole_rows(path, table, len(lines), row_type, quantity)
     others = (path / f"{other}.csv" for other in TABLES if other != name)
     if not rows and not any(has_row(other) for other in others):
@@ -98,7 +98,8 @@ def look(
     different = differences(about, summary) or (
         [] if rows else ["what is computed: sweep, branches or catalogue"]
     )
-    finished = about.get("status") == "finished" and len(rows) == len(lines) - 1
+    whole = len(rows) == len(lines) - 1 and not cut
+    finished = about.get("status") == "finished" and whole
     first = loads is not None and [row.load for row in rows] == list(loads[: len(rows)])
     if first and set(different) == _FOLLOWED & set(different):
         finished, different = finished and len(rows) == len(loads or ()), []

@@ -98,18 +98,12 @@ def test_last_point_beyond_doubt_is_kept_apart_from_the_last_one() -> None:
     again = progress_from(from_file(progress.arrays()), family)
     assert again.here is not None
     assert again.before is not None
-    for kept, point in (
-        (again.here, here),
-        (again.before, before),
-        (again.leads[0].start, lead),
-    ):
+    first = again.leads[0]
+    pairs = (again.here, here), (again.before, before), (first.start, lead)
+    for kept, point in pairs:
         assert kept.point.value == point.point.value
         np.testing.assert_array_equal(kept.point.x, point.point.x)
-    assert (again.leads[0].n_unstable, again.leads[0].order, again.leads[0].origin) == (
-        1,
-        5,
-        2,
-    )
+    assert (first.n_unstable, first.order, first.origin) == (1, 5, 2)
     assert again.met[0][1] == 300.0
     numbers = again.order, again.branch, again.origin, again.step, again.left
     assert numbers == (6, 3, 1, 0.02, 17)

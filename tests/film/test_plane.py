@@ -210,3 +210,11 @@ def test_film_stays_in_its_plane_and_in_good_triangles(oval: Disk) -> None:
     assert sides.smallest_angle > 12
     assert sides.areas.sum() == pytest.approx(found.film_energy / 1500, rel=1e-12)
     assert (sides.normals @ normal > 0.999).all()
+
+
+def test_place_far_from_the_origin_costs_the_area_no_digits(oval: Disk) -> None:
+    """A billion sizes away, of a polygon whose corners are known there exactly."""
+    corners = np.ldexp(np.round(np.ldexp(oval.x[oval.loop][:, :2], 20)), -20)
+    far = corners + np.ldexp([1.0, -3.0], 30)
+    np.testing.assert_array_equal(far - np.ldexp([1.0, -3.0], 30), corners)
+    assert polygon_area(far) == pytest.approx(polygon_area(corners), rel=1e-13)

@@ -57,6 +57,16 @@ def test_turned_triangles_agree_again_and_the_fewer_are_turned(seed):
     assert not none.any()
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_of_as_many_triangles_those_are_turned_that_disagree_with_the_first(first):
+    """So that nothing else decides which side of a film is its front."""
+    strip = np.array([[0, 1, 2], [2, 1, 3], [2, 3, 4], [4, 3, 5]])
+    wrong = np.arange(4) % 2 == first
+    found, turned = oriented(np.where(wrong[:, None], strip[:, ::-1], strip))
+    assert (turned == (np.arange(4) % 2 == 1)).all()
+    assert (found == (strip if first else strip[:, ::-1])).all()
+
+
 def test_a_moebius_strip_is_refused_and_an_untwisted_one_is_no_disk():
     points, triangles = moebius()
     with pytest.raises(MeshError, match="only one side"):

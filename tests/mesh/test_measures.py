@@ -15,6 +15,7 @@ from eulerplateau.mesh.measures import (
     measure,
 )
 from eulerplateau.mesh.waist import (
+    WaistPath,
     waist_path,
     waist_twist,
 )
@@ -216,3 +217,21 @@ def test_shape_that_is_not_finite_is_refused() -> None:
     with pytest.raises(MeshError) as caught:
         measure(mesh, mesh.shape.moved(x))
     assert caught.value.index == 7
+
+
+def test_lines_of_a_waist_know_nothing_of_each_other() -> None:
+    """Of the hexagon's six the twist is that of the one that twists most."""
+    mesh = shapes.mesh_of(*shapes.hexagon_points(4))
+    path = waist_path(mesh)
+    assert path is not None
+    assert len(path.first) > 2
+    ends = [*path.first[1:], len(path.corners)]
+    lines = [
+        WaistPath(path.corners[a:b], path.weights[a:b], np.zeros(1, dtype=np.int64))
+        for a, b in zip(path.first, ends, strict=True)
+    ]
+    for seed in range(5):
+        noise = np.random.default_rng(seed).standard_normal(mesh.n_v)
+        x = mesh.x + np.outer(0.05 * noise, [0.0, 0.0, 1.0])
+        twists = [waist_twist(line, x) for line in lines]
+        assert waist_twist(path, x) == max(twists, key=abs)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -83,20 +84,25 @@ def test_finished_run_is_not_computed_again(mesh, tmp_path):
     assert {file: file.stat().st_mtime_ns for file in tmp_path.rglob("*.vtp")} == before
 
 
-def test_damaged_last_rows_are_computed_again(mesh, tmp_path):
+@pytest.mark.parametrize("finished", [False, True])
+def test_damaged_last_rows_are_computed_again(mesh, tmp_path, finished):
     """A row cut off by a loss of power, and a shape that is not whole."""
-    spec = film(mesh, "springs", LOADS)
+    spec = film(mesh, "springs", LOADS[:4] if finished else LOADS)
     run_sweep(spec, tmp_path / "whole")
     for damage in ("row", "shape"):
         folder = tmp_path / damage
-        interrupted(lambda *args: run_sweep(spec, *args), folder, 3)
+        if finished:
+            shutil.copytree(tmp_path / "whole", folder)
+        else:
+            interrupted(lambda *args: run_sweep(spec, *args), folder, 3)
         if damage == "row":
             table = folder / "sweep.csv"
             table.write_bytes(table.read_bytes()[:-40])
         else:
             shape = folder / "shapes/shape_0003.vtp"
             shape.write_bytes(shape.read_bytes()[:1000])
-        assert run_sweep(spec, folder).kept == 3
+        again = run_sweep(spec, folder)
+        assert (again.finished, again.kept) == (False, 3)
         assert everything(folder) == everything(tmp_path / "whole")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,8 +16,9 @@ from eulerplateau.cells import (
     solve_cell,
     sweep_cell,
 )
+from eulerplateau.cells.equilibrium import status_of
 from eulerplateau.errors import SpecError
-from eulerplateau.solvers import Status
+from eulerplateau.solvers import Stability, Status, tangent_model
 from tests.helpers.polygons import order, turned, uneven as uneven_polygon
 
 POINTS = np.array([[-0.8, -0.7], [1.1, -0.5], [0.7, 0.9], [-0.5, 0.6]])
@@ -182,3 +185,16 @@ def test_on_any_polygon_a_cell_ends_as_a_minimum_or_says_why_there_is_none(
     if found.converged:
         assert found.n_unstable == 0
         assert found.residual < 1e-6
+
+
+def test_stall_in_balance_is_a_minimum_or_a_saddle(uneven: CellEquilibrium) -> None:
+    """By its modes; what converged, or stalled, out of balance has stalled."""
+    cell = uneven.cell
+    model = tangent_model(cell.energy(SIGMA, KS), uneven.x)
+    stable, saddle = (Stability(np.array([low, 9.0]), 1e-9) for low in (1.0, -1.0))
+    searched = Status.STALLED
+    assert status_of(cell, model, stable, searched) is Status.CONVERGED
+    assert status_of(cell, model, saddle, searched) is Status.SADDLE
+    pulled = replace(model, residual=1e-3)
+    for end in (Status.STALLED, Status.CONVERGED):
+        assert status_of(cell, pulled, saddle, end) is Status.STALLED

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy, project_lengths, rigid_motions
-from eulerplateau.loop.lengths import jacobian
+from eulerplateau.loop.lengths import Lengths, jacobian
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, TangentModel, tangent_model
 from tests.helpers import equilibria, shapes
@@ -160,3 +162,31 @@ def test_triangle_with_two_interior_edges_has_no_freedom_left() -> None:
     model = tangent_model(equilibria.quadratic_energy(loop), x)
     assert model.hessian.shape == (0, 0)
     assert model.residual < 1e-13
+
+
+class OneByOne(Lengths):
+    """Lengths of edges that are not kept by turning."""
+
+    def turns(self, x: FloatArray) -> None:  # type: ignore[override]
+        return None
+
+
+@pytest.mark.parametrize("plane", [False, True])
+def test_model_by_turns_is_the_one_by_columns(
+    oval: Disk, oval_problem: Problem, bent: FloatArray, plane: bool
+) -> None:
+    """Of a loop of uneven edges that is no equilibrium, and free to slide in its plane."""
+    loop = oval_problem.loop
+    x = bent[:, :2] if plane else bent
+    kept = project_lengths(loop, x)
+    assert kept is not None
+    energy = (
+        equilibria.energy_in_plane(loop, LOAD) if plane else loop_energy(oval_problem, LOAD)
+    )
+    one = tangent_model(energy, kept)
+    other = tangent_model(replace(energy, constraint=OneByOne(loop)), kept)
+    assert type(one.coordinates) is not type(other.coordinates)
+    assert one.residual == pytest.approx(other.residual, rel=1e-8)
+    largest = np.abs(other.tensions).max()
+    np.testing.assert_allclose(one.tensions, other.tensions, atol=1e-9 * largest)
+    np.testing.assert_allclose(one.eigenvalues, other.eigenvalues, rtol=1e-6)

@@ -96,6 +96,14 @@ def test_disk_leaves_the_plane_at_96_pi_cubed() -> None:
     assert lowest / (2 * KAPPA) < 1e-10 * SADDLE
 
 
+@pytest.mark.parametrize(("part", "index"), [(-1e-9, 2), (1e-9, 4)])
+def test_morse_index_sees_a_threshold_to_a_part_in_a_billion(
+    part: float, index: int
+) -> None:
+    """Eigenvalues of 4e-5 there are above the noise, small as they are beside others."""
+    assert morse_index(disk(make_basis(8, TWISTED), SADDLE * (1 + part))) == index
+
+
 def test_two_lobes_have_no_unstable_mode_before_the_twist_and_one_after() -> None:
     film, mode = onset()
     assert mode.transverse == pytest.approx(1, abs=1e-12)

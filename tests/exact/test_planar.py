@@ -15,6 +15,7 @@ from numpy.polynomial.legendre import leggauss
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.planar import LOBES, PlanarFilm, Regime, planar_film, thresholds
+from eulerplateau.exact.planar.elastica import Elastica
 
 # Paper, tab:contact.
 TABLE = {
@@ -290,3 +291,11 @@ def test_a_film_in_line_contact_is_one_shape_of_every_size(lobes):
         growth = (tension / 1e10) ** (1 / 3)
         assert film.energy == pytest.approx(first.energy * growth, rel=1e-12)
         assert film.area == pytest.approx(film.energy / (3 * tension), rel=1e-14)
+
+
+@pytest.mark.parametrize("amplitude", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_modulus_of_a_small_wave_keeps_its_digits(amplitude: float) -> None:
+    """m = a^2 I / (4 mean^2 + I)^2 to leading order in the amplitude a, I = imaginary2."""
+    wave = Elastica(mean=1.3, amplitude=amplitude, imaginary2=0.7)
+    leading = amplitude**2 * 0.7 / (4 * 1.3**2 + 0.7) ** 2
+    assert wave.m == pytest.approx(leading, rel=10 * amplitude**2 + 1e-14, abs=0.0)

@@ -80,7 +80,9 @@ def test_iteration_ends_quadratically(
 ) -> None:
     """The residual after each of the last iterations goes with the square of the last."""
     start = shapes.crumpled(oval, 1e-3)
-    total = solve(oval_problem, start, load).iterations
+    found = solve(oval_problem, start, load)
+    assert_minimum(found)
+    total = found.iterations
     residuals = [
         solve(oval_problem, start, load, max_iterations=i).residual
         for i in range(max(1, total - 6), total)
@@ -157,6 +159,7 @@ def test_a_saddle_that_turns_almost_for_free_does_not_stop_the_iteration(
 
 def test_restart_from_a_minimum_stays_there(oval: Disk, oval_problem: Problem) -> None:
     first = solve(oval_problem, shapes.crumpled(oval, 1e-3), 900.0)
+    assert first.status is Status.CONVERGED
     again = solve(oval_problem, first.shape.x, 900.0)
     assert again.iterations <= 1
     assert again.energy == pytest.approx(first.energy, rel=1e-12)
@@ -175,6 +178,7 @@ def test_a_moved_start_ends_in_the_moved_minimum(oval: Disk, oval_problem: Probl
     start = shapes.crumpled(oval, 1e-3)
     moved = start @ shapes.rotation().T + [0.3, -0.2, 0.7]
     one, two = (solve(oval_problem, x, 900.0) for x in (start, moved))
+    assert one.status is two.status is Status.CONVERGED
     assert two.energy == pytest.approx(one.energy, rel=1e-11)
     assert equilibria.distance_up_to_motion(one.shape.x, two.shape.x) < 1e-6
 
@@ -182,6 +186,7 @@ def test_a_moved_start_ends_in_the_moved_minimum(oval: Disk, oval_problem: Probl
 def test_slack_film_lets_the_loop_be_a_circle(oval: Disk, oval_problem: Problem) -> None:
     found = solve(oval_problem, shapes.crumpled(oval, 1e-3), 0.0)
     around = found.shape.x_loop
+    assert found.status is Status.CONVERGED
     radii = np.linalg.norm(around - around.mean(axis=0), axis=1)
     assert found.film_energy == 0.0
     # On unequal edges the circle is not exactly the polygon's: 1/n_b^2 at n_b = 36.

@@ -190,3 +190,14 @@ def disk_or_line(path: Path) -> Disk | str:
         return read_mesh(path)
     except MeshError as error:
         return str(error)
+
+
+def test_a_name_without_end_ends_in_the_message(tmp_path):
+    path = tmp_path / "disk.ply"
+    header = (
+        f"ply\nformat ascii 1.0\nelement {'x' * 5000} 3\nproperty float x\nend_header\n"
+    )
+    path.write_text(header + "0\n")
+    with pytest.raises(MeshError, match="not a whole") as caught:
+        read_mesh(path)
+    assert len(str(caught.value)) < 300 + len(str(path))

@@ -56,14 +56,19 @@ def one_line(path: Path) -> Iterator[None]:
     except OSError as error:
         raise OutputError(path, f"cannot be read: {error.strerror}") from None
     except NotWholeError as error:
-        raise _mesh_error(path, f"is not a whole {path.suffix} file: {error}") from None
+        problem = f"is not a whole {path.suffix} file: {_reason(error)}"
+        raise _mesh_error(path, problem) from None
     except ForeignError as error:
-        raise _mesh_error(path, str(error)) from None
+        raise _mesh_error(path, _reason(error)) from None
     # A damaged file: numbers that are none, counts below zero, unknown types.
     except Exception as error:
-        reason = (str(error).splitlines() or [type(error).__name__])[0][:_LONGEST_REASON]
-        problem = f"cannot be read as a {path.suffix} file: {reason}"
+        problem = f"cannot be read as a {path.suffix} file: {_reason(error)}"
         raise _mesh_error(path, problem) from error
+
+
+def _reason(error: Exception) -> str:
+    """Return the first line of what an error says, as far as a line goes."""
+    return (str(error).splitlines() or [type(error).__name__])[0][:_LONGEST_REASON]
 
 
 def _mesh_error(path: Path, problem: str) -> MeshError:

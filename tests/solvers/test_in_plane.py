@@ -13,9 +13,11 @@ from eulerplateau.film.models import (
 from eulerplateau.loop import Loop, LoopEnergy, close_with_lengths
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.solvers import Problem, Status, solve, stability, tangent_model
+from eulerplateau.solvers.in_plane import newton
+from eulerplateau.solvers.in_plane.chain import Chain
 from eulerplateau.solvers.in_plane.newton import COARSE, minimum_in_plane, settle_in_plane
 from tests.helpers import shapes
-from tests.helpers.equilibria import energy_in_plane
+from tests.helpers.equilibria import energy_in_plane, ring
 
 EDGES = (48, COARSE, 100, 2 * COARSE, 2 * COARSE + 1, 300)
 
@@ -161,3 +163,21 @@ def test_fan_about_one_vertex_needs_no_better_mesh() -> None:
         energies.append(found.energy)
     np.testing.assert_array_equal(found.shape.triangles, fan.triangles)
     assert energies[1] == pytest.approx(energies[0], rel=1e-12)
+
+
+def test_coarse_loop_that_leads_to_a_saddle_is_not_believed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Here to the circle, beyond the tension at which it turns oval."""
+    load = 2000.0
+    loop, circle = ring(4 * COARSE)
+    flat = circle[:, :2]
+    chain = Chain(loop, load)
+    monkeypatch.setattr(
+        newton, "_find_coarse_minimum", lambda *arguments: (chain.angles(flat), 5)
+    )
+    found = minimum_in_plane(loop, load, flat * [1.1, 0.9], 500, unseen)
+    assert found is not None
+    film, stability = found
+    assert stability.n_unstable == 0
+    assert np.ptp(film.x, axis=0).max() > 1.2 * np.ptp(flat, axis=0).max()

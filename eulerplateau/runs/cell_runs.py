@@ -19,6 +19,7 @@ from eulerplateau.runs.continuing import look
 from eulerplateau.runs.recording import (
     Opening,
     OpenRun,
+    keep_point,
     not_converged,
     opened,
 )
@@ -173,10 +174,7 @@ def _recorded(
         )
         if point.special is not None and not point.known:
             special.append(_special(row, point.special))
-            write_special(run.folder.path, SPECIAL_COLUMNS, special)
-        if point.then is not None:
-            run.folder.keep(point.then.arrays)
-        run.totals |= {"points": len(run.rows), "special": len(special)}
+        keep_point(run, point, SPECIAL_COLUMNS, special)
         yield row
 
 

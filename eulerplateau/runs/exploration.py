@@ -24,6 +24,7 @@ from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.recording import (
     Opening,
     Recorder,
+    keep_point,
     recording,
 )
 from eulerplateau.runs.rows import BranchRow
@@ -123,10 +124,7 @@ def _recorded(
         )
         if point.special is not None and not point.known:
             special.append(_special(row, point.special))
-            write_special(run.folder.path, SPECIAL_COLUMNS, special)
-        if point.then is not None:
-            run.folder.keep(point.then.arrays)
-        run.totals |= {"points": len(run.rows), "special": len(special)}
+        keep_point(run, point, SPECIAL_COLUMNS, special)
         yield row
 
 

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 from threadpoolctl import threadpool_info, threadpool_limits
@@ -27,7 +27,11 @@ from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.inputs import contents
 from eulerplateau.runs.rows import Record, Row
 from eulerplateau.runs.spec import RunSpec
+from eulerplateau.runs.table import write_special
 from eulerplateau.solvers import Equilibrium
+
+if TYPE_CHECKING:
+    from eulerplateau.branches import DiagramPoint
 
 # Matrices here are as large as the loop: a second thread waits more than it works.
 BLAS_THREADS = 1
@@ -275,6 +279,20 @@ def make_row(
         status=found.status,
         **columns,
     )
+
+
+def keep_point(
+    run: OpenRun[Any],
+    point: DiagramPoint,
+    columns: Sequence[str],
+    special: list[dict[str, Any]],
+) -> None:
+    """Write what there is of a point besides its row: its special line, and the way on."""
+    if point.special is not None and not point.known:
+        write_special(run.folder.path, columns, special)
+    if point.then is not None:
+        run.folder.keep(point.then.arrays)
+    run.totals |= {"points": len(run.rows), "special": len(special)}
 
 
 def not_converged(rows: Sequence[Record]) -> list[int]:

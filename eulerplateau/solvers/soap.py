@@ -45,8 +45,8 @@ def search(
     x_loop = close_with_lengths(problem.loop, start.x_loop) if smooth is None else smooth
     if x_loop is None:
         return None
-    if smooth is not None:
-        start = _spanned(problem, x_loop) or start
+    if smooth is not None and (tied := _tied(problem)) is not None:
+        start = tied.shape(x_loop)
     # Blocks of a hundred rows: two threads would mostly wait for each other.
     with threadpool_limits(1, user_api="blas"):
         if largest_turning(x_loop) < _CRUMPLED:
@@ -71,12 +71,6 @@ def _tied(problem: Problem) -> FilmOfLoop | None:
         return make_film(problem.disk, "dirichlet").of_loop(problem.disk.shape)
     except (MeshError, LinAlgError):
         return None
-
-
-def _spanned(problem: Problem, x_loop: FloatArray) -> Shape | None:
-    """Return a smooth film across a loop (n_b, 3), whatever its start was."""
-    tied = _tied(problem)
-    return None if tied is None else tied.shape(x_loop)
 
 
 def _near(

@@ -26,6 +26,7 @@ GOES_ON = click.option(
     expose_value=False,
     help="Go on from a run that was interrupted, as is done without being asked.",
 )
+QUIET = click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
 OVERWRITE = click.option(
     "--overwrite", is_flag=True, help="Replace another run that lies in the folder."
 )

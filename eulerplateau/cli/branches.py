@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.batch import GOES_ON, OVERWRITE, before, begin
-from eulerplateau.cli.overrides import load_single, single_values
+from eulerplateau.cli.batch import GOES_ON, OVERWRITE, QUIET, before, begin
+from eulerplateau.cli.overrides import load_single, setting, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:
@@ -23,17 +23,11 @@ if TYPE_CHECKING:
     help="The folder to write to. Default: beside RUN.toml, with its name, what is set and "
     "-branches.",
 )
-@click.option(
-    "--set",
-    "settings",
-    metavar="KEY=VALUE",
-    multiple=True,
-    help="Replace a key of the specification, as in branches.special_points=3.",
-)
+@setting("branches.special_points=3")
 @click.option("--pictures/--no-pictures", default=True, help="Draw branches.png (default).")
 @GOES_ON
 @OVERWRITE
-@click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
+@QUIET
 def branches(
     spec: Path,
     out: Path | None,

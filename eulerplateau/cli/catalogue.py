@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.batch import OVERWRITE, before
-from eulerplateau.cli.overrides import load_single, single_values
+from eulerplateau.cli.batch import OVERWRITE, QUIET, before
+from eulerplateau.cli.overrides import load_single, setting, single_values
 
 if TYPE_CHECKING:
     from eulerplateau.runs import Catalogue, RunSpec
@@ -22,18 +22,12 @@ if TYPE_CHECKING:
     help="The folder to write to. Default: beside RUN.toml, with its name, what is set and "
     "-catalogue.",
 )
-@click.option(
-    "--set",
-    "settings",
-    metavar="KEY=VALUE",
-    multiple=True,
-    help="Replace a key of the specification, as in catalogue.starts=50.",
-)
+@setting("catalogue.starts=50")
 @click.option(
     "--pictures/--no-pictures", default=True, help="Draw catalogue.png (default)."
 )
 @OVERWRITE
-@click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
+@QUIET
 def catalogue(
     spec: Path,
     out: Path | None,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.overrides import load_single, single_values
+from eulerplateau.cli.batch import QUIET
+from eulerplateau.cli.overrides import load_single, setting, single_values
 
 if TYPE_CHECKING:
     from eulerplateau.runs import PhaseDiagram
@@ -20,15 +21,9 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     help="The folder to write to. Default: beside RUN.toml, with its name and -phases.",
 )
-@click.option(
-    "--set",
-    "settings",
-    metavar="KEY=VALUE",
-    multiple=True,
-    help="Replace a key of the specification, as in cell.adhesions=4.",
-)
+@setting("cell.adhesions=4")
 @click.option("--pictures/--no-pictures", default=True, help="Draw it (default).")
-@click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
+@QUIET
 def phase_diagram(
     spec: Path, out: Path | None, settings: tuple[str, ...], pictures: bool, quiet: bool
 ) -> None:

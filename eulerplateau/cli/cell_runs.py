@@ -9,8 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.batch import GOES_ON, OVERWRITE, RESUME, before, begin, carried_out
-from eulerplateau.cli.overrides import load_single, parse_setting, single_values
+from eulerplateau.cli.batch import (
+    GOES_ON,
+    OVERWRITE,
+    QUIET,
+    RESUME,
+    before,
+    begin,
+    carried_out,
+)
+from eulerplateau.cli.overrides import load_single, parse_setting, setting, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:
@@ -19,7 +27,6 @@ if TYPE_CHECKING:
 _PICTURES = click.option(
     "--pictures/--no-pictures", default=True, help="Draw the diagram (default)."
 )
-_QUIET = click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
 
 
 @click.command()
@@ -43,7 +50,7 @@ _QUIET = click.option("--quiet", is_flag=True, help="No progress, no summary: fo
 @_PICTURES
 @RESUME
 @OVERWRITE
-@_QUIET
+@QUIET
 def sweep(
     specs: tuple[Path, ...],
     out: Path | None,
@@ -93,17 +100,11 @@ def _swept(
     type=click.Path(path_type=Path),
     help="The folder to write to. Default: beside RUN.toml, with its name and -branches.",
 )
-@click.option(
-    "--set",
-    "settings",
-    metavar="KEY=VALUE",
-    multiple=True,
-    help="Replace a key of the specification, as in branches.special_points=3.",
-)
+@setting("branches.special_points=3")
 @_PICTURES
 @GOES_ON
 @OVERWRITE
-@_QUIET
+@QUIET
 def branches(
     spec: Path,
     out: Path | None,

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eulerplateau.cli.batch import QUIET
+
 if TYPE_CHECKING:
     from eulerplateau.runs.ensembles import Case, EnsembleResult, Outcome
 
@@ -49,7 +51,7 @@ class _Shard(click.ParamType[tuple[int, int]]):
 )
 @click.option("--dask", metavar="ADDRESS", help="The scheduler of a Dask cluster, to use.")
 @click.option("--parquet", is_flag=True, help="Write ensemble.parquet too.")
-@click.option("--quiet", is_flag=True, help="No progress, no summary: for batches.")
+@QUIET
 def ensemble(
     spec: Path,
     out: Path | None,

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import click
 
 S = TypeVar("S")
+F = TypeVar("F", bound=Callable[..., Any])
 
 
 def parse_setting(text: str) -> tuple[str, list[Any]]:
@@ -24,6 +25,17 @@ def parse_setting(text: str) -> tuple[str, list[Any]]:
     if not values or "" in values:
         raise click.BadParameter(f"{text!r} should give a value", param_hint="--set")
     return key, values
+
+
+def setting(example: str) -> Callable[[F], F]:
+    """Return the option --set of a command that carries out one run."""
+    return click.option(
+        "--set",
+        "settings",
+        metavar="KEY=VALUE",
+        multiple=True,
+        help=f"Replace a key of the specification, as in {example}.",
+    )
 
 
 def load_single(

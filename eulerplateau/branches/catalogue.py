@@ -29,7 +29,8 @@ from eulerplateau.branches.point import BranchPoint, point_near
 from eulerplateau.branches.symmetry import OPERATIONS, loop_symmetries
 from eulerplateau.loop import Loop, close_with_lengths
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers import Equilibrium, Problem, one_thread, solve
+from eulerplateau.solvers import Equilibrium, Problem, solve
+from eulerplateau.threads import one_thread
 
 # Random loops are circles with waves of these numbers, of sizes up to this over the number
 # squared; small ones are as many as large ones are rare.

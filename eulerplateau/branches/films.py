@@ -32,10 +32,9 @@ from eulerplateau.solvers import (
     Equilibrium,
     Problem,
     Status,
-    one_thread,
     solve,
-    stepwise,
 )
+from eulerplateau.threads import one_thread, stepwise
 
 # Unresolved is no obstacle: the rows say so.
 _EQUILIBRIA = Status.CONVERGED, Status.UNRESOLVED

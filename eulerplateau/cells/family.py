@@ -29,7 +29,8 @@ from eulerplateau.cells.solving import solve_cell
 from eulerplateau.cells.touching import touches
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers import Status, one_thread, stepwise
+from eulerplateau.solvers import Status
+from eulerplateau.threads import one_thread, stepwise
 
 PARAMETERS = "load", "stiffness"
 

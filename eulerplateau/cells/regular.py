@@ -14,7 +14,8 @@ from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.cells.cell import Cell
 from eulerplateau.cells.equilibrium import CellEquilibrium
 from eulerplateau.errors import SpecError
-from eulerplateau.solvers import Stability, one_thread, tangent_model
+from eulerplateau.solvers import Stability, tangent_model
+from eulerplateau.threads import one_thread
 
 # How far, in units of the circumradius, a symmetric cell may be from its image.
 _SYMMETRIC = 1e-6

@@ -15,7 +15,8 @@ from eulerplateau.cells.cell import Cell, shortest_edge
 from eulerplateau.cells.equilibrium import CellEquilibrium, measured, status_of
 from eulerplateau.cells.touching import Apart, crosses_itself, strands_near
 from eulerplateau.errors import SpecError
-from eulerplateau.solvers import DenseModels, Descent, Status, one_thread, stability
+from eulerplateau.solvers import DenseModels, Descent, Status, stability
+from eulerplateau.threads import one_thread
 
 _MAX_ITERATIONS = 500
 # Beyond a cell of these statuses a sweep does not go.

@@ -19,11 +19,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg.lapack import dpotrs, dtrtrs
 from scipy.sparse import csc_array
-from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.dissection import dissect
 from eulerplateau.film.elimination import Elimination, Part, plan
+from eulerplateau.threads import one_thread
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ def condense(laplacian: csc_array, loop: IntArray, interior: IntArray) -> Conden
     rows = laplacian.tocsr()
     pieces = dissect(rows, loop, interior)
     # Blocks of a hundred rows: two threads would mostly wait for each other.
-    with threadpool_limits(1, user_api="blas"):
+    with one_thread():
         row = np.repeat(np.arange(rows.shape[0]), np.diff(rows.indptr))
         found = factorise(plan(row, rows.indices, pieces, loop), rows.data)
     # A translation costs nothing. Where slivers make weights of 1e8 that cancel, rounding

@@ -32,7 +32,7 @@ from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.phases import REGIONS, Line, PhaseDiagram
 from eulerplateau.runs.recording import Opening, opened
 from eulerplateau.runs.table import table_content
-from eulerplateau.solvers import one_thread
+from eulerplateau.threads import one_thread
 
 # Points of the fold, and how often a line's beginning is halved.
 _FOLD_POINTS, _HALVINGS = 160, 7

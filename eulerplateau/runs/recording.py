@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
-from threadpoolctl import threadpool_info, threadpool_limits
 
 from eulerplateau import __version__
 from eulerplateau.arrays import FloatArray
@@ -29,6 +28,7 @@ from eulerplateau.runs.rows import Record, Row
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.table import write_special
 from eulerplateau.solvers import Equilibrium
+from eulerplateau.threads import pools, threads
 
 if TYPE_CHECKING:
     from eulerplateau.branches import DiagramPoint
@@ -107,7 +107,7 @@ def opened(
     run.json, which otherwise is `summary` with what the run has come to.
     """
     summary = {"results": RESULTS, **summary}
-    with only_writer(path), threadpool_limits(BLAS_THREADS, user_api="blas"):
+    with only_writer(path), threads(BLAS_THREADS):
         where = {"versions": _versions(), "machine": _machine()}
         lying: Lying[T] = Lying((), False, {})
         if not opening.overwrite:
@@ -213,8 +213,7 @@ def recording(
 
 def blas_threads() -> list[int]:
     """Return the threads of each BLAS that is loaded, as they are now."""
-    pools = threadpool_info()
-    return [pool["num_threads"] for pool in pools if pool["user_api"] == "blas"]
+    return [pool["num_threads"] for pool in pools()]
 
 
 def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
@@ -240,7 +239,7 @@ def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
 
 def _machine() -> str:
     """Return the kind of processor, and for which of them BLAS computes."""
-    kinds = {pool.get("architecture", "") for pool in threadpool_info()}
+    kinds = {pool.get("architecture", "") for pool in pools()}
     return " ".join([platform.machine(), *sorted(kinds - {""})])
 
 

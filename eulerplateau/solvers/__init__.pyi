@@ -17,4 +17,3 @@ from .second_variation import (
 )
 from .solving import SOLVERS as SOLVERS, solve as solve, sweep as sweep
 from .start import displaced as displaced
-from .threads import one_thread as one_thread, stepwise as stepwise

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from scipy.linalg import LinAlgError
-from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
@@ -19,6 +18,7 @@ from eulerplateau.solvers.large_loops.coarse_start import smoothed
 from eulerplateau.solvers.models import DenseModels
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
+from eulerplateau.threads import one_thread
 
 # A soap film is sought near the last shape at most so many times in one solve.
 _SHAPES = 60
@@ -48,7 +48,7 @@ def search(
     if smooth is not None and (tied := _tied(problem)) is not None:
         start = tied.shape(x_loop)
     # Blocks of a hundred rows: two threads would mostly wait for each other.
-    with threadpool_limits(1, user_api="blas"):
+    with one_thread():
         if largest_turning(x_loop) < _CRUMPLED:
             found = _near(problem, start, x_loop, load, max_iterations, observe)
             if found is not None:

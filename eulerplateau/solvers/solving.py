@@ -15,7 +15,7 @@ from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.start import displaced
-from eulerplateau.solvers.threads import one_thread
+from eulerplateau.threads import one_thread
 
 # By the names of solver.name in a run's specification; only the one asked for is loaded.
 SOLVERS = {"newton": "newton", "cg": "conjugate_gradient", "cg-plain": "plain_gradient"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import platform
 from collections.abc import Iterable, Sequence
@@ -26,6 +27,15 @@ def make_mesh(**settings: Any) -> Disk:
 def processes() -> ProcessPoolExecutor:
     """Return a pool with a process for each CPU, of one thread each."""
     return ProcessPoolExecutor(initializer=partial(threadpool_limits, 1))
+
+
+def peak_memory() -> float:
+    """Return this process's peak memory in MiB; a child's ru_maxrss may be its parent's."""
+    status = Path("/proc/self/status")
+    if not status.exists():
+        return math.nan
+    line = next(row for row in status.read_text().splitlines() if row.startswith("VmHWM"))
+    return int(line.split()[1]) / 1024
 
 
 def markdown_table(rows: Iterable[Sequence[str]], words: int) -> str:

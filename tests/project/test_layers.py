@@ -30,7 +30,7 @@ ROOMS = (
     "pictures",
 )
 LEVEL = {room: level for level, room in enumerate([*ROOMS, "cli"])}
-GROUND = {"__init__", "__main__", "arrays", "errors", "interruption", "settings"}
+GROUND = {"__init__", "__main__", "arrays", "errors", "interruption", "settings", "threads"}
 # Compiled loops that other rooms call: numba wants what calls each other in one file.
 SHARED_KERNELS = {"eulerplateau.loop.kernels", "eulerplateau.loop.slide_kernels"}
 

@@ -102,7 +102,7 @@ def carry_out(task: tuple[Case, Path]) -> Outcome:
     case, folder = task
     began = time.perf_counter()
     # Loaded by those who compute.
-    from eulerplateau.solvers import one_thread
+    from eulerplateau.threads import one_thread
 
     try:
         if case_name(case.kind, case.spec) != case.name:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from threadpoolctl import threadpool_limits
-
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import close_with_lengths
 from eulerplateau.mesh import Shape
@@ -14,6 +12,7 @@ from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.in_plane.newton import PlaneEquilibrium, minimum_in_plane
 from eulerplateau.solvers.models import DenseModels
 from eulerplateau.solvers.problem import Problem
+from eulerplateau.threads import one_thread
 
 # Loops with more vertices are left to the chain.
 _LARGEST = 128
@@ -49,7 +48,7 @@ def search(
         return None
     else:
         models = DenseModels(film.energy(problem.loop, load))
-        with threadpool_limits(1, user_api="blas"):
+        with one_thread():
             state, status = Descent(models, max_iterations, shown).run(flat)
         polygon = PlaneEquilibrium(state.model.x, state.model.tensions, state.iteration)
         spectrum = state.stability or models.spectrum(state.model)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import resource
 import subprocess
 import sys
 import time
@@ -20,7 +19,7 @@ from eulerplateau.loop import backward_differences
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import SOLVERS, Equilibrium, Problem, displaced, solve
 from scripts.studies.benchmark.report import draw, report, summary, write_csv
-from scripts.studies.common import make_mesh
+from scripts.studies.common import make_mesh, peak_memory
 
 SIZES = (474, 2000, 7500, 50_000, 200_000)
 COLD, WARM = 700.0, 710.0
@@ -131,7 +130,7 @@ def measure(size: int, solver: str) -> dict[str, Any]:
         "loop_edges": mesh.n_b,
         "solver": solver,
         "set_up": set_up + condensed,
-        "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
+        "memory": peak_memory() / 1024,
         "finished": runs[-1]["status"] != "out of time",
         "runs": runs,
     }

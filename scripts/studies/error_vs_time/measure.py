@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers import Equilibrium, Problem, Status, solve
+from scripts.studies.common import peak_memory
 from scripts.studies.error_vs_time.scenes import (
     Scene,
     gyration,
@@ -141,12 +141,3 @@ def what(
 def distance(scene: Scene, lengths: FloatArray, loop: FloatArray) -> float:
     """Return the error of the shape (n_b, 3) where it is known exactly, else nan."""
     return math.nan if scene.exact is None else shape_error(lengths, loop, scene.exact)
-
-
-def peak_memory() -> float:
-    """Return this process's peak memory in MiB; a child's ru_maxrss may be its parent's."""
-    status = Path("/proc/self/status")
-    if not status.exists():
-        return math.nan
-    line = next(row for row in status.read_text().splitlines() if row.startswith("VmHWM"))
-    return int(line.split()[1]) / 1024

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from functools import cache
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import scipy.linalg  # noqa: F401 - brings a BLAS of its own, which is to be found too
 from threadpoolctl import ThreadpoolController
@@ -18,10 +18,22 @@ def _controller() -> ThreadpoolController:
     return ThreadpoolController()
 
 
-def one_thread() -> AbstractContextManager[object]:
-    """Return a context in which BLAS has one thread; it costs some microseconds."""
-    context: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
+def threads(count: int) -> AbstractContextManager[object]:
+    """Return a context in which BLAS has `count` threads; it costs some microseconds."""
+    pools = _controller()
+    context: AbstractContextManager[object] = pools.limit(limits=count, user_api="blas")
     return context
+
+
+def one_thread() -> AbstractContextManager[object]:
+    """Return a context in which BLAS has one thread."""
+    return threads(1)
+
+
+def pools() -> list[dict[str, Any]]:
+    """Return what is known of each BLAS that is loaded, its threads as they are now."""
+    found: list[dict[str, Any]] = _controller().select(user_api="blas").info()
+    return found
 
 
 def stepwise(make: Callable[[], Iterator[T]]) -> Iterator[T]:

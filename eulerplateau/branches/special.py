@@ -252,5 +252,5 @@ def _describe(
         error=interval.error(point, index),
         n_unstable=index,
         multiplicity=multiplicity,
-        symmetry=mode_symmetry(point.x, mode),
+        symmetry=mode_symmetry(point.x, mode, mirrors=not point.energy.is_handed),
     )

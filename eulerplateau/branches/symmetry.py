@@ -27,6 +27,8 @@ OPERATIONS = {
     "half turn about short axis": (-1, -1, 1),
     "inversion": (-1, -1, -1),
 }
+# Those that a loop of one handedness can have.
+_TURNS = {name for name, signs in OPERATIONS.items() if np.prod(signs) > 0}
 
 # Root-mean-square mismatch, in units of L: half an edge of the paper's mesh.
 _SAME_SHAPE = 7e-3
@@ -48,13 +50,20 @@ class ModeSymmetry:
     transverse: float
 
 
-def mode_symmetry(x_loop: FloatArray, mode: FloatArray) -> ModeSymmetry:
-    """Classify a displacement `mode` (n, d) of the loop (n, d), d = 3, or 2 in a plane."""
+def mode_symmetry(
+    x_loop: FloatArray, mode: FloatArray, *, mirrors: bool = True
+) -> ModeSymmetry:
+    """Classify a displacement `mode` (n, d) of the loop (n, d), d = 3, or 2 in a plane.
+
+    Without `mirrors` what reverses handedness counts as no operation.
+    """
     shape, axes = _along_axes(x_loop)
     moved = _in_space(mode) @ axes.T
     breaks: list[str] = []
     keeps: list[str] = []
     for name, numbering in _own_operations(shape, _SAME_SHAPE).items():
+        if not (mirrors or name in _TURNS):
+            continue
         turned = (moved * np.array(OPERATIONS[name]))[numbering]
         parity = float(np.sum(turned * moved) / np.sum(moved * moved))
         if abs(parity) > 0.5:

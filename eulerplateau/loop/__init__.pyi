@@ -1,7 +1,7 @@
 from .adhesions import Adhesions as Adhesions
 from .bending import Bending as Bending, inextensible as inextensible
 from .edges import Edges as Edges, edges_of as edges_of
-from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy, Term as Term
+from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
 from .free_bending import FreeBending as FreeBending
 from .lengths import (
@@ -26,9 +26,11 @@ from .motions import (
     rigid_motions as rigid_motions,
     sliding as sliding,
 )
+from .term import OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,
     LengthMetric as LengthMetric,
     edge_turns as edge_turns,
     length_metric as length_metric,
 )
+from .twist import PlaneTwist as PlaneTwist, Twist as Twist

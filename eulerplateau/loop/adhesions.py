@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.loop.energy import Term
+from eulerplateau.loop.term import Term
 
 
 @dataclass(frozen=True, eq=False)

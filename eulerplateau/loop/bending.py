@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.energy import LoopEnergy, Term
+from eulerplateau.loop.energy import LoopEnergy
 from eulerplateau.loop.lengths import Lengths
 from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.term import Term
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,11 @@ class Bending(Term):
         """Return the second derivative by the edges (n, n)."""
         return 2 * self.loop.edge_bending_matrix
 
+    @property
+    def is_form(self) -> bool:
+        """Return True."""
+        return True
+
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the change of a quadratic form: its gradient half-way times the step."""
         return float(np.vdot(step, self.loop.bending_force(x + 0.5 * step)))
@@ -47,6 +53,6 @@ class Bending(Term):
 def inextensible(
     loop: Loop, film: Term, free_motions: Callable[[FloatArray], FloatArray]
 ) -> LoopEnergy:
-    """Return bending plus a film's energy of a loop that keeps its lengths."""
-    terms = {"bending": Bending(loop), "film": film}
+    """Return a loop's own energy plus a film's, of a loop that keeps its lengths."""
+    terms = {"bending": Bending(loop), **loop.terms, "film": film}
     return LoopEnergy(terms, Lengths(loop), loop.mean_lengths, free_motions)

@@ -6,7 +6,6 @@ writes a `Term`; what minimises and follows equilibria knows only the sum of the
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.term import Term
 from eulerplateau.loop.turns import EdgeTurns
 
 
@@ -43,59 +43,6 @@ class Constraint(Protocol):
         """
 
 
-class Term(ABC):
-    """One term of an energy of loops x (n, d), d = 3, or 2 in a plane.
-
-    Energies are in units of alpha / L, lengths in units of L.
-    """
-
-    @property
-    def rounding(self) -> float:
-        """What rounding alone leaves of the term's force, per unit of position."""
-        return 0.0
-
-    @abstractmethod
-    def force(self, x: FloatArray) -> FloatArray:
-        """Return the gradient of the term (n, d)."""
-
-    @abstractmethod
-    def hessian(self, x: FloatArray) -> FloatArray:
-        """Return the second derivative, the caller's to change.
-
-        It is one matrix (n, n) for all coordinates, or a full one (d n, d n).
-        """
-
-    def edge_hessian(self) -> FloatArray | None:
-        """Return the second derivative by the edges e_v (n, n), all coordinates alike.
-
-        None of a term that is not the same quadratic form of the edges everywhere. By
-        positions such a form has lost digits: its entries are larger by 1 / s^2.
-        """
-        return None
-
-    def change(self, x: FloatArray, step: FloatArray) -> float:
-        """Return the term at x + step less that at x, as precise as the difference.
-
-        Here it is the work of the force along the step, by Gauss's rule: right for terms
-        of degree 16, and to many digits for smooth ones. Terms that know better say so.
-        """
-        places, shares = np.polynomial.legendre.leggauss(8)
-        work = [np.vdot(step, self.force(x + 0.5 * (1 + t) * step)) for t in places]
-        return 0.5 * float(np.dot(shares, work))
-
-    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
-        """Return the derivative of the force (n, d) by a parameter; None if there is none.
-
-        A parameter is a number the term depends on, by the name under which a branch
-        varies it: the load of a film, the stiffness of springs.
-        """
-        return None
-
-    def holds(self, x: FloatArray) -> bool:
-        """Return whether the term is still good at x."""
-        return True
-
-
 @dataclass(frozen=True)
 class LoopEnergy:
     """A sum of terms, and what a solver must know to minimise it.
@@ -115,6 +62,16 @@ class LoopEnergy:
     constraint: Constraint
     weights: FloatArray
     free_motions: Callable[[FloatArray], FloatArray]
+
+    @property
+    def is_form(self) -> bool:
+        """Whether it is one quadratic form of all coordinates alike."""
+        return all(term.is_form for term in self.terms.values())
+
+    @property
+    def is_handed(self) -> bool:
+        """Whether a loop and its mirror image differ in energy."""
+        return any(term.is_handed for term in self.terms.values())
 
     @cached_property
     def rounding(self) -> float:

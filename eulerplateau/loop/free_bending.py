@@ -22,8 +22,8 @@ from eulerplateau.loop.edges import (
     scattered,
     shifted,
 )
-from eulerplateau.loop.energy import Term
 from eulerplateau.loop.loop import backward_differences
+from eulerplateau.loop.term import Term
 
 # The sum of sizes in a row of the second derivative, 2 (1 + 4 + 6 + 4 + 1) / l^3.
 _STIFFEST = 32.0

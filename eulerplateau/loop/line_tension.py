@@ -8,8 +8,8 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.edges import edges_of, length_changes, length_hessian
-from eulerplateau.loop.energy import Term
 from eulerplateau.loop.loop import backward_differences
+from eulerplateau.loop.term import Term
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import kernels
+from eulerplateau.loop.term import OwnTerm
 
 # Edges in which a resolved loop can turn back on itself.
 _TURNING_BACK = 6
@@ -16,9 +18,15 @@ _TURNING_BACK = 6
 
 @dataclass(frozen=True)
 class Loop:
-    """A closed chain of edges that keep their rest lengths s_v (n_b,), in units of L."""
+    """A closed chain of edges that keep their rest lengths s_v (n_b,), in units of L.
+
+    Attributes
+    ----------
+    terms : what its energy has beside its bending, by names: "twist"
+    """
 
     rest_lengths: FloatArray
+    terms: Mapping[str, OwnTerm] = field(default_factory=dict)
 
     @cached_property
     def mean_lengths(self) -> FloatArray:

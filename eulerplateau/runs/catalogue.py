@@ -36,6 +36,9 @@ def run_catalogue(
     started = time.perf_counter()
     if spec.film.plane:
         raise SpecError("film.plane", "should be false: equilibria leave the plane")
+    if spec.loop.twist_ratio is not None:
+        what = "should be absent: catalogues take mirror images for the same"
+        raise SpecError("loop.twist_ratio", what)
     disk = make_mesh(spec)
     problem = Problem(disk, spec.film.model)
     settings = spec.catalogue
@@ -43,7 +46,7 @@ def run_catalogue(
     column = FILM_LOADS[spec.film.model].column
     opening = Opening("catalogue", CatalogueRow, column, overwrite)
     counts: list[dict[str, float]] = []
-    with recording(spec, disk, path, opening, started) as recorder:
+    with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run
         if run.finished:
             return Catalogue(

@@ -21,6 +21,7 @@ from eulerplateau.film import FILM_LOADS
 from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk
 from eulerplateau.runs.inputs import make_mesh
+from eulerplateau.runs.kinds import film_kind
 from eulerplateau.runs.recording import (
     Opening,
     Recorder,
@@ -29,7 +30,7 @@ from eulerplateau.runs.recording import (
 )
 from eulerplateau.runs.rows import BranchRow
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.start import start_shape, stored_start
+from eulerplateau.runs.start import make_problem, start_shape, stored_start
 from eulerplateau.runs.table import special_of, write_special
 from eulerplateau.solvers import Equilibrium, Problem
 
@@ -81,11 +82,12 @@ def run_branches(
     disk = make_mesh(spec)
     if spec.film.plane:
         raise SpecError("film.plane", "should be false: branches leave the plane")
-    problem = Problem(disk, spec.film.model)
+    problem = make_problem(spec, disk)
     window = _window(spec)
     column = FILM_LOADS[spec.film.model].column
-    opening = Opening("branches", BranchRow, column, overwrite)
-    with recording(spec, disk, path, opening, started) as recorder:
+    row_type = film_kind(spec.loop.twist_ratio).branch_row
+    opening = Opening("branches", row_type, column, overwrite)
+    with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run
         special = special_of(run.rows, run.folder.path)
         if not run.finished:

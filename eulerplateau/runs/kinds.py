@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from eulerplateau.film import FILM_LOADS, SPRING_LOAD
-from eulerplateau.runs.rows import BranchRow, LoadName, Row, columns
+from eulerplateau.runs.rows import (
+    BranchRow,
+    LoadName,
+    Row,
+    TwistBranchRow,
+    TwistRow,
+    columns,
+)
 from eulerplateau.runs.states import FILM_STATES, States
 
 
@@ -59,3 +66,9 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes, FILM_STATES)
+WITH_TWIST = replace(FILM, row=TwistRow, branch_row=TwistBranchRow)
+
+
+def film_kind(twist_ratio: Any) -> Kind:
+    """Return the kind of a film's run, by what it says of its loop's twist."""
+    return FILM if twist_ratio is None else WITH_TWIST

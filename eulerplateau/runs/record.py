@@ -11,7 +11,7 @@ from typing import Any
 from eulerplateau.errors import MissingLibraryError, OutputError
 from eulerplateau.film import SPRING_LOAD
 from eulerplateau.runs.folder import read_summary, shape_name
-from eulerplateau.runs.kinds import FILM, Kind
+from eulerplateau.runs.kinds import FILM, Kind, film_kind
 from eulerplateau.runs.rows import LoadName, Record, columns
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
 from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
@@ -150,7 +150,7 @@ def read_runs(folders: Sequence[Path]) -> list[Run]:
     runs = [_read(folder) for folder in distinct]
     first = runs[0].kind if runs else None
     for run in runs:
-        if run.kind != first:
+        if first is None or run.kind.name != first.name:
             problem = f"is the run of a {run.kind.name}: show one kind at a time"
             raise OutputError(run.folder, problem)
     if len({run.load.column for run in runs}) > 1:
@@ -198,7 +198,10 @@ def kind_of(about: Mapping[str, Any]) -> Kind:
         from eulerplateau.runs.cell_kind import CELL
 
         return CELL
-    return FILM
+    try:
+        return film_kind(about["spec"]["loop"].get("twist_ratio"))
+    except (AttributeError, KeyError, TypeError):
+        return FILM
 
 
 def _names(folders: Sequence[Path]) -> list[str]:

@@ -17,7 +17,7 @@ import numpy as np
 from eulerplateau import __version__
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import EulerPlateauError, OutputError
-from eulerplateau.film import FILM_LOADS, Load
+from eulerplateau.film import Load
 from eulerplateau.interruption import working_on
 from eulerplateau.mesh import Disk, Measurer
 from eulerplateau.runs.checkpoint import Arrays
@@ -27,7 +27,7 @@ from eulerplateau.runs.inputs import contents
 from eulerplateau.runs.rows import Record, Row
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.table import write_special
-from eulerplateau.solvers import Equilibrium
+from eulerplateau.solvers import Equilibrium, Problem
 from eulerplateau.threads import pools, threads
 
 if TYPE_CHECKING:
@@ -182,33 +182,34 @@ class Recorder(Generic[R]):
     """Writes a film's equilibria into a run."""
 
     run: OpenRun[R]
+    problem: Problem
     measurer: Measurer
-    load: Load
     row_type: type[R]
-    rest_mesh: str
 
     def record(
         self, found: Equilibrium, modes: Mapping[str, FloatArray], **columns: Any
     ) -> R:
         """Write an equilibrium, modes as its fields; `columns` are the row type's own."""
         measured = asdict(self.measurer.measure(found.shape))
-        step = len(self.run.rows)
-        row = make_row(step, found, self.load, self.row_type, measured | columns)
-        disk = self.measurer.disk_of(found.shape)
+        for term in self.problem.loop.terms.values():
+            columns |= term.columns(found.shape.x_loop)
+        step, load = len(self.run.rows), self.problem.film.load
+        row = make_row(step, found, load, self.row_type, measured | columns)
+        disk, rest = self.measurer.disk_of(found.shape), self.problem.disk.digest
         state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
-        self.run.folder.record(row, disk, found.shape.x, modes, self.rest_mesh, state)
+        self.run.folder.record(row, disk, found.shape.x, modes, rest, state)
         self.run.rows.append(row)
         return row
 
 
 @contextmanager
 def recording(
-    spec: RunSpec, disk: Disk, path: Path, opening: Opening[R], started: float
+    spec: RunSpec, problem: Problem, path: Path, opening: Opening[R], started: float
 ) -> Iterator[Recorder[R]]:
     """Open the folder `path` for a film's run, as `opened` does."""
+    disk = problem.disk
     with opened(path, opening, describe(spec, disk), started) as run:
-        load = FILM_LOADS[spec.film.model]
-        yield Recorder(run, Measurer(disk), load, opening.row_type, disk.digest)
+        yield Recorder(run, problem, Measurer(disk), opening.row_type)
 
 
 def blas_threads() -> list[int]:

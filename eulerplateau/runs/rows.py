@@ -157,6 +157,33 @@ class BranchRow(Row):
 
 
 @dataclass(frozen=True)
+class _OfTwist:
+    """What a row says of the twist of a loop that resists it.
+
+    Attributes
+    ----------
+    twist_energy : float, in units of alpha / L; a part of `energy`
+    writhe, link : float, in turns; right-handed is positive
+    twist_moment : float, M = C 2 pi (link - writhe) / L, in units of alpha / L
+    """
+
+    twist_energy: float
+    writhe: float
+    link: float
+    twist_moment: float
+
+
+@dataclass(frozen=True)
+class TwistRow(_OfTwist, Row):
+    """One load of a sweep of a loop that resists twist."""
+
+
+@dataclass(frozen=True)
+class TwistBranchRow(_OfTwist, BranchRow):
+    """One point of a branch of a loop that resists twist."""
+
+
+@dataclass(frozen=True)
 class CatalogueRow(Row):
     """An equilibrium of a catalogue: the columns of sweep.csv and these.
 

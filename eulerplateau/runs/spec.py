@@ -13,6 +13,7 @@ from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import MeshSpec
 from eulerplateau.runs.loads import Load as Load, Loads, in_order as in_order
+from eulerplateau.runs.loop_spec import LoopSettings
 from eulerplateau.settings import Model, Settings, read_toml, validate
 
 # Keys that name a file.
@@ -36,20 +37,6 @@ class FilmSettings(Settings):
 
     model: Literal["springs", "dirichlet", "area"] = "springs"
     plane: bool = False
-
-
-class LoopSettings(Settings):
-    """The loop's bending modulus and length: they turn a film's constant into a load.
-
-    Attributes
-    ----------
-    alpha : float
-        Bending energy is alpha * kappa^2 per length (the rod's rigidity is 2 alpha).
-    length : float
-    """
-
-    alpha: float = Field(default=1.0, gt=0)
-    length: float = Field(default=1.0, gt=0)
 
 
 class StartSettings(Settings):

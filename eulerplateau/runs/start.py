@@ -1,4 +1,4 @@
-"""Where a run starts: at its mesh, or at a shape that another run has written."""
+"""What a run minimises, and where it starts: at its mesh, or at another run's shape."""
 
 from __future__ import annotations
 
@@ -6,7 +6,18 @@ from eulerplateau.errors import SpecError
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.runs.shape_files import StoredShape, read_shape
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.solvers import displaced
+from eulerplateau.solvers import Problem, displaced
+
+
+def make_problem(spec: RunSpec, disk: Disk) -> Problem:
+    """Return what a run minimises; raises SpecError, MeshError."""
+    return Problem(
+        disk,
+        spec.film.model,
+        in_plane=spec.film.plane,
+        twist_ratio=spec.loop.twist_ratio,
+        link=spec.loop.link or 0.0,
+    )
 
 
 def start_shape(spec: RunSpec, disk: Disk) -> Shape:

@@ -17,6 +17,7 @@ from eulerplateau.mesh import Disk, Shape
 from eulerplateau.runs.continuing import look
 from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.inputs import make_mesh
+from eulerplateau.runs.kinds import film_kind
 from eulerplateau.runs.recording import (
     Opening,
     OpenRun,
@@ -27,7 +28,7 @@ from eulerplateau.runs.recording import (
 from eulerplateau.runs.rows import Row
 from eulerplateau.runs.shape_files import read_state
 from eulerplateau.runs.spec import RunSpec
-from eulerplateau.runs.start import start_shape
+from eulerplateau.runs.start import make_problem, start_shape
 from eulerplateau.solvers import Equilibrium, Problem, sweep
 
 
@@ -72,12 +73,14 @@ def run_sweep(
     """
     started = time.perf_counter()
     disk = make_mesh(spec)
-    problem = Problem(disk, spec.film.model, in_plane=spec.film.plane)
+    problem = make_problem(spec, disk)
     start, tensions, solver = start_shape(spec, disk), None, spec.solver
     column = FILM_LOADS[spec.film.model].column
     loads = spec.loads()
-    opening = Opening("sweep", Row, column, overwrite, loads=loads if resume else None)
-    with recording(spec, disk, path, opening, started) as recorder:
+    row_type = film_kind(spec.loop.twist_ratio).row
+    own = loads if resume else None
+    opening = Opening("sweep", row_type, column, overwrite, loads=own)
+    with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run
         neutral = _neutral(run)
         if run.kept and not run.finished:
@@ -115,7 +118,8 @@ def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictErro
     load = FILM_LOADS[spec.film.model].column
     loads = spec.loads() if resume else None
     try:
-        look(path, describe(spec, make_mesh(spec)), "sweep", Row, load, loads)
+        row_type = film_kind(spec.loop.twist_ratio).row
+        look(path, describe(spec, make_mesh(spec)), "sweep", row_type, load, loads)
     except ConflictError as error:
         return error
     except EulerPlateauError:

@@ -27,6 +27,7 @@ from eulerplateau.solvers.equilibrium import (
     Equilibrium,
     Status,
 )
+from eulerplateau.solvers.loop_terms import beyond_linear
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.trial_space import TrialSpace, trial_space
 from eulerplateau.solvers.variables import Variables
@@ -108,7 +109,10 @@ def descend(
     while True:
         heed()
         try:
-            shape = iterate.shape if at_rest else _rested(problem, iterate.shape)
+            shape = iterate.shape
+            if not at_rest:
+                film = problem.film.of_loop(shape)
+                shape = film.shape(film.project(shape.x_loop))
             shape = problem.film.prepared(shape)
             iterate, at_rest = replace(iterate, shape=shape), True
             near = problem.length_error(shape) <= _NEAR
@@ -116,7 +120,7 @@ def descend(
             forces, tension, scale = _forces(problem, iterate, load, penalty)
         except LinAlgError:  # no film, or no loop
             return _record(problem, iterate, load, Status.STALLED)
-        if scale == 0.0 or problem.film.pinched(shape, problem.loop):
+        if scale == 0.0 or problem.pinched(shape):
             # A point; a soap film without width.
             return _record(problem, iterate, load, Status.STALLED)
         residual = float(np.abs(forces).max()) / scale
@@ -159,12 +163,6 @@ def descend(
             return _given_up(problem, iterate, load, Status.UNRESOLVED)
 
 
-def _rested(problem: Problem, shape: Shape) -> Shape:
-    """Return the film at rest on a shape's loop."""
-    film = problem.film.of_loop(shape)
-    return film.shape(film.project(shape.x_loop))
-
-
 def _first_penalty(problem: Problem, load: float) -> float:
     """Return the stretching stiffness mu, alpha / L^2.
 
@@ -192,13 +190,14 @@ def _forces(
     """Return grad A (n_v, 3), the tensions lambda + mu c / s (n_b,), the largest force."""
     shape = iterate.shape
     tension = _tension(problem, iterate, penalty)
-    parts = (
+    parts = [
         problem.bending_energy(shape)[1],
         load * problem.film.forces(shape),
         problem.tension_force(shape, tension),
-    )
+        *problem.loop_forces(shape),
+    ]
     scale = max(float(np.abs(part).max()) for part in parts)
-    total = problem.without_sliding(shape, parts[0] + parts[1] + parts[2])
+    total = problem.without_sliding(shape, sum(parts[1:], start=parts[0]))
     return total, tension, scale
 
 
@@ -222,6 +221,7 @@ def _minimise(
     shape = iterate.shape
     space = trial_space(problem, shape, load)
     variables = method.variables(space, problem.loop, shape.x_loop, penalty)
+    rod = beyond_linear(problem.loop, shape)
     springs, weights = space.springs
     base = space.lift(forces)
     gradient = np.empty_like(base)
@@ -246,7 +246,7 @@ def _minimise(
             penalty,
             gradient,
         )
-        value += space.beyond_linear(moved, gradient)
+        value += space.beyond_linear(moved, gradient) + rod(moved, gradient)
         return value, variables.derivative(y, gradient)
 
     def keep(y: FloatArray) -> None:

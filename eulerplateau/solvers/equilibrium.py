@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import numpy as np
@@ -115,6 +116,7 @@ class Equilibrium:
         Of the loop's edges: the multipliers of c_v = (|e_v|^2 - s_v^2) / (2 s_v).
     load : float
         The film's own (load.py).
+    loop_energies : of what the loop's energy has beside its bending, by names
     residual : float
         |g_bending + g_film + J^T lambda|_inf over the largest of the three terms' |.|_inf.
     film_residual : float
@@ -138,6 +140,7 @@ class Equilibrium:
     seconds: float
     status: Status
     stability: Stability | None = None
+    loop_energies: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def converged(self) -> bool:

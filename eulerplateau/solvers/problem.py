@@ -15,7 +15,14 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.film import Film, make_film
-from eulerplateau.loop import Loop, kernels, largest_turning, remove_sliding
+from eulerplateau.loop import (
+    Loop,
+    PlaneTwist,
+    Twist,
+    kernels,
+    largest_turning,
+    remove_sliding,
+)
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers.equilibrium import (
     LARGEST_LOAD,
@@ -45,12 +52,20 @@ class Problem:
     loop: Loop
 
     def __init__(
-        self, disk: Disk, film: str | Film = "springs", *, in_plane: bool = False
+        self,
+        disk: Disk,
+        film: str | Film = "springs",
+        *,
+        in_plane: bool = False,
+        twist_ratio: float | None = None,
+        link: float = 0.0,
     ) -> None:
         """Span a disk by a film: "springs", "dirichlet", "area", or a film of one's own.
 
-        `in_plane` keeps a film of true area in the plane of its disk. Raises SpecError for
-        an unknown film, MeshError for a disk that cannot carry it.
+        `in_plane` keeps a film of true area in the plane of its disk. With `twist_ratio`,
+        the rigidities' C / B, the loop resists twist: it was turned `link` times and then
+        welded. Raises SpecError for an unknown film or a wrong number, MeshError for a disk
+        that cannot carry it.
         """
         if not isinstance(disk, Disk):
             problem = f"found {type(disk).__name__}; read_disk and mesh_polygon return one"
@@ -58,7 +73,7 @@ class Problem:
         made = make_film(disk, film, in_plane=in_plane) if isinstance(film, str) else film
         object.__setattr__(self, "disk", disk)
         object.__setattr__(self, "film", made)
-        object.__setattr__(self, "loop", Loop(disk.rest_lengths))
+        object.__setattr__(self, "loop", _loop(disk, in_plane, twist_ratio, link))
 
     def __repr__(self) -> str:
         """Return one line: the film, and the size of its mesh."""
@@ -95,6 +110,15 @@ class Problem:
         )
         return energy, gradient
 
+    def loop_forces(self, shape: Shape) -> list[FloatArray]:
+        """Return the gradient (n_v, 3) of what the loop's energy has beside its bending."""
+        forces = []
+        for term in self.loop.terms.values():
+            force = np.zeros_like(shape.x)
+            force[shape.loop] = term.force(shape.x_loop)
+            forces.append(force)
+        return forces
+
     def tension_force(self, shape: Shape, tensions: FloatArray) -> FloatArray:
         """Return J^T lambda (n_v, 3) for the tensions lambda (n_b,) of the loop's edges."""
         force = np.zeros_like(shape.x)
@@ -110,10 +134,11 @@ class Problem:
         tension = self.tension_force(shape, tensions)
         try:
             film = load * self.film.forces(shape)
-            total = self.without_sliding(shape, bending + film + tension)
+            parts = [bending, film, tension, *self.loop_forces(shape)]
+            total = self.without_sliding(shape, sum(parts[1:], start=parts[0]))
         except LinAlgError:
             return np.inf
-        scale = max(float(np.abs(f).max()) for f in (bending, film, tension))
+        scale = max(float(np.abs(part).max()) for part in parts)
         return float(np.abs(total).max()) / scale if scale != 0 else 0.0
 
     def without_sliding(self, shape: Shape, forces: FloatArray) -> FloatArray:
@@ -132,21 +157,29 @@ class Problem:
         """Return max |l_v / s_v - 1| over the loop's edges."""
         return self.loop.length_error(shape.x_loop)
 
+    def pinched(self, shape: Shape) -> bool:
+        """Return whether strands meet where there is no film, or no loop, beyond that."""
+        own = any(term.pinched(shape.x_loop) for term in self.loop.terms.values())
+        return own or self.film.pinched(shape, self.loop)
+
     def equilibrium(
         self, shape: Shape, tensions: FloatArray, load: float, status: Status
     ) -> Equilibrium:
         """Record a shape with all its numbers computed by the kernels on the full mesh."""
         film, pull = self.film.energy_gradient(shape, load)
         bending = self.bending_energy(shape)[0]
+        terms = self.loop.terms.items()
+        loop = {name: term.energy(shape.x_loop) for name, term in terms}
         pulls = np.abs(pull).max(axis=1)
         inside, strongest = pulls[self.disk.interior].max(initial=0.0), pulls.max()
         return Equilibrium(
             shape=shape,
             tensions=tensions,
             load=load,
-            energy=film + bending,
+            energy=film + bending + sum(loop.values()),
             film_energy=film,
             bending_energy=bending,
+            loop_energies=loop,
             residual=self.residual(shape, tensions, load),
             film_residual=float(inside / strongest) if strongest > 0.0 else 0.0,
             length_error=self.length_error(shape),
@@ -192,11 +225,12 @@ class Problem:
 
         FOLDED if triangles of a soap film lie on each other, whose area is not spanned. And
         PINCHED if a soap film has run out of width: between strands that meet no disk
-        is left to span, and what a solver makes of the mesh there means nothing. Every
+        is left to span, and what a solver makes of the mesh there means nothing; or if
+        strands of a twisted rod meet, which do not pass through each other. Every
         solution passes here before anybody sees it, whatever method found it.
         """
         loop = found.status is not Status.NOT_FINITE and found.length_error < _CLOSED
-        if loop and self.film.pinched(found.shape, self.loop):
+        if loop and self.pinched(found.shape):
             return replace(found, status=Status.PINCHED)
         if not found.converged:
             return found
@@ -206,3 +240,18 @@ class Problem:
         if self.film.folded(found.shape):
             return replace(found, status=Status.FOLDED)
         return found
+
+
+def _loop(disk: Disk, in_plane: bool, twist_ratio: float | None, link: float) -> Loop:
+    """Return the loop of a disk; raises SpecError for numbers that no rod has."""
+    bare = Loop(disk.rest_lengths)
+    if twist_ratio is None:
+        if link != 0.0:
+            raise SpecError("link", "needs twist_ratio: twist that costs nothing is lost")
+        return bare
+    if not (twist_ratio > 0.0 and np.isfinite(twist_ratio)):
+        raise SpecError("twist_ratio", f"found {twist_ratio:g}; should be positive")
+    if not np.isfinite(link):
+        raise SpecError("link", f"found {link:g}; should be a number of turns")
+    twist = PlaneTwist if in_plane else Twist
+    return Loop(disk.rest_lengths, {"twist": twist(bare, twist_ratio, link)})

@@ -76,7 +76,12 @@ class SubspaceModels(_OneMatrix):
 
 
 def quadratic_models(loop: Loop, energy: LoopEnergy) -> Models:
-    """Return how an energy of fixed weights is looked at, by the size of its loop."""
+    """Return how the energy of a film of fixed weights is looked at.
+
+    By the size of its loop, and by whether that resists more than bending.
+    """
+    if not energy.is_form:
+        return DenseModels(energy)
     if len(loop.rest_lengths) <= DENSE_LOOP:
         return QuadraticModels(energy, loop)
     return SubspaceModels(energy, loop)

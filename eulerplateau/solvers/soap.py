@@ -102,7 +102,7 @@ def _near(
         shape = film.shape(x_loop)
         found = problem.record(shape, tensions, load, status, stability, spent)
         own = models.energy.holds(x_loop) and film.made_at(x_loop)
-        lost = status is Status.STALLED or problem.film.pinched(shape, problem.loop)
+        lost = status is Status.STALLED or problem.pinched(shape)
         if own or lost or spent >= max_iterations:
             return found
     return found

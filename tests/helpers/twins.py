@@ -65,3 +65,20 @@ def _chords(mesh: Disk, x: FloatArray) -> FloatArray:
 
 def _sides(cycle: list[int]) -> list[tuple[int, int]]:
     return list(zip(cycle, cycle[1:] + cycle[:1], strict=True))
+
+
+def writhe(x: FloatArray) -> float:
+    """Gauss's double integral over pairs of edges, by quadrature on both: slow."""
+    places, shares = np.polynomial.legendre.leggauss(40)
+    places, shares, n = 0.5 + 0.5 * places, 0.5 * shares, len(x)
+    total = 0.0
+    for i in range(n):
+        for j in range(i + 2, n if i > 0 else n - 1):
+            first, second = x[(i + 1) % n] - x[i], x[(j + 1) % n] - x[j]
+            apart = (x[i] - x[j])[:, None, None] + (
+                first[:, None, None] * places[:, None] - second[:, None, None] * places
+            )
+            seen = np.tensordot(np.cross(first, second), apart, 1)
+            seen /= np.linalg.norm(apart, axis=0) ** 3
+            total += float(shares @ seen @ shares)
+    return total / (2 * np.pi)

@@ -106,7 +106,7 @@ def joined(places: Sequence[Place]) -> Table:
     """
     found = [_found(place) for place in places if place.is_there]
     for run in found:
-        if run.kind != found[0].kind:
+        if run.kind.name != found[0].kind.name:
             problem = f"is the run of a {run.kind.name}: join one kind at a time"
             raise OutputError(run.place.folder, problem)
     keys = _differing(found)
@@ -138,9 +138,9 @@ def _found(place: Place) -> _Found:
 
 
 def _row_type(found: Sequence[_Found]) -> type[Any]:
-    """Return the type of row whose columns all rows have."""
-    kind = found[0].kind
-    explored = any(isinstance(row, kind.branch_row) for run in found for row in run.rows)
+    """Return the type of row that has the columns of all rows."""
+    kind = max((run.kind for run in found), key=lambda kind: len(kind.columns))
+    explored = any((run.place.folder / "branches.csv").is_file() for run in found)
     return kind.branch_row if explored else kind.row
 
 

@@ -1,0 +1,173 @@
+"""The energy of a loop's twist: a rod that was turned, and whose ends were then welded.
+
+Twist is free to spread along a rod that is straight by nature, and is uniform at rest. By
+White's formula it is what is left of the turns Lk that were put in when the loop writhes:
+
+    E = (gamma / 2) theta^2,   theta = 2 pi (Lk - Wr),   M = gamma theta,   dE/dLk = 2 pi M,
+
+gamma = C / alpha = 2 C / B, C the rigidity to twist and B = 2 alpha that to bending.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.loop import Loop, backward_differences, differences
+from eulerplateau.loop.term import OwnTerm
+from eulerplateau.loop.writhe_kernels import (
+    add_edge_blocks,
+    tangent_area,
+    writhe,
+    writhe_by_edges,
+    writhe_second,
+)
+
+# Two strands that pass through each other change the writhe by 2.
+_PASSED = 0.5
+# Loops whose writhe is kept: where a step begins, and where it may end.
+_KEPT = 4
+
+
+@dataclass(frozen=True)
+class Twist(OwnTerm):
+    """The twisting energy of a welded loop x (n, 3), in units of alpha / L.
+
+    Attributes
+    ----------
+    loop : its edges' lengths
+    ratio : float, C / B
+    link : float, Lk, in turns; right-handed turns count positive
+    """
+
+    loop: Loop
+    ratio: float
+    link: float
+    _known: list[tuple[FloatArray, float]] = field(default_factory=list, repr=False)
+
+    @property
+    def gamma(self) -> float:
+        """C / alpha."""
+        return 2 * self.ratio
+
+    @property
+    def is_handed(self) -> bool:
+        """Whether a loop and its mirror image differ in energy: if it was turned."""
+        return self.link != 0.0
+
+    @property
+    def rounding(self) -> float:
+        """What rounding alone leaves of the force, per unit of position."""
+        shortest = float(self.loop.rest_lengths.min())
+        turns = abs(self.link) + 1
+        eps = float(np.finfo(np.float64).eps)
+        return eps * self.gamma * (2 * math.pi) ** 2 * turns * 4 / shortest**2
+
+    def writhe(self, x: FloatArray) -> float:
+        """Return Wr of a loop, by all pairs of its edges."""
+        for place, known in self._known:
+            if np.array_equal(place, x):
+                return known
+        found = writhe(np.ascontiguousarray(x))
+        self._known[:] = [(x.copy(), found), *self._known[: _KEPT - 1]]
+        return found
+
+    def moment(self, x: FloatArray) -> float:
+        """Return the twisting moment M, in units of alpha / L."""
+        return self.gamma * 2 * math.pi * (self.link - self.writhe(x))
+
+    def energy(self, x: FloatArray) -> float:
+        """Return the twisting energy."""
+        return 0.5 * self.moment(x) ** 2 / self.gamma
+
+    def columns(self, x: FloatArray) -> Mapping[str, float]:
+        """Return what a table says of the twist of a loop."""
+        return {
+            "twist_energy": self.energy(x),
+            "writhe": self.writhe(x),
+            "link": self.link,
+            "twist_moment": self.moment(x),
+        }
+
+    def pinched(self, x: FloatArray) -> bool:
+        """Return whether strands meet: without thickness no twist is held beyond that."""
+        return self.loop.strands_meet(x)
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return -2 pi M dWr/dx (n, 3)."""
+        return -2 * math.pi * self.moment(x) * _slope(x)
+
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return -2 pi M d2Wr/dx2 + 4 pi^2 gamma dWr/dx dWr/dx (3 n, 3 n)."""
+        slope = _slope(x).ravel()
+        matrix = np.outer(4 * math.pi**2 * self.gamma * slope, slope)
+        blocks = matrix.reshape(len(x), 3, len(x), 3)
+        factor = -2 * math.pi * self.moment(x)
+        add_edge_blocks(*writhe_second(differences(x)), factor, blocks)
+        return matrix
+
+    def change(self, x: FloatArray, step: FloatArray) -> float:
+        """Return the energy at x + step less that at x.
+
+        By the tangents' area, which is as precise as the difference. Raises LinAlgError
+        where that is not the change of the writhe: a strand would pass through another.
+        """
+        after = x + step
+        gained = tangent_area(differences(x), differences(after)) / (2 * math.pi)
+        before, then = self.writhe(x), self.writhe(after)
+        if abs(then - before - gained) > _PASSED:
+            raise LinAlgError("a strand of the loop would pass through another")
+        return -math.pi * gained * (self.moment(x) + self.moment(after))
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return the derivative of the force (n, 3) by "link" or "twist_ratio"."""
+        if parameter == "link":
+            return -4 * math.pi**2 * self.gamma * _slope(x)
+        if parameter == "twist_ratio":
+            return self.force(x) / self.ratio
+        return None
+
+
+@dataclass(frozen=True)
+class PlaneTwist(Twist):
+    """The same of a loop that is kept in its plane: nothing writhes, and it is constant."""
+
+    @property
+    def rounding(self) -> float:
+        """Return 0: there is no force."""
+        return 0.0
+
+    @property
+    def is_form(self) -> bool:
+        """Return True."""
+        return True
+
+    def writhe(self, x: FloatArray) -> float:
+        """Return 0."""
+        return 0.0
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return no force (n, d)."""
+        return np.zeros_like(x)
+
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return no stiffness (n, n)."""
+        return np.zeros((len(x), len(x)))
+
+    def change(self, x: FloatArray, step: FloatArray) -> float:
+        """Return 0."""
+        return 0.0
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return no change of the force by "link" or "twist_ratio"."""
+        return np.zeros_like(x) if parameter in ("link", "twist_ratio") else None
+
+
+def _slope(x: FloatArray) -> FloatArray:
+    """Return dWr/dx (n, 3)."""
+    return -backward_differences(writhe_by_edges(differences(x)))

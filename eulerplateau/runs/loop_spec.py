@@ -1,0 +1,37 @@
+"""What a run specification may say of its loop: of which rod it is made."""
+
+from __future__ import annotations
+
+from pydantic import Field, model_validator
+
+from eulerplateau.errors import SpecError
+from eulerplateau.settings import Settings
+
+
+class LoopSettings(Settings):
+    """The loop's bending modulus and length: they turn a film's constant into a load.
+
+    And its twist: without `twist_ratio` that escapes, and costs nothing.
+
+    Attributes
+    ----------
+    alpha : float
+        Bending energy is alpha * kappa^2 per length (the rod's rigidity is 2 alpha).
+    length : float
+    twist_ratio : float
+        C / B, the rigidity to twist over that to bending: 2/3 to 1 for a round rod.
+    link : float
+        Turns that the rod was given before its ends were welded; by default none.
+    """
+
+    alpha: float = Field(default=1.0, gt=0)
+    length: float = Field(default=1.0, gt=0)
+    twist_ratio: float | None = Field(default=None, gt=0)
+    link: float | None = None
+
+    @model_validator(mode="after")
+    def _link_needs_a_rigidity(self) -> LoopSettings:
+        if self.link is not None and self.twist_ratio is None:
+            problem = "needs loop.twist_ratio: twist that costs nothing is lost"
+            raise SpecError("loop.link", problem)
+        return self

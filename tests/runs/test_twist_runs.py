@@ -1,0 +1,99 @@
+"""Runs of a loop that resists twist: keys, columns that appear with them, going on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eulerplateau.errors import SpecError
+from eulerplateau.mesh import write_mesh
+from eulerplateau.runs import read_run, run_branches, run_sweep
+from eulerplateau.runs.ensembles import load_ensemble, run_ensemble
+from eulerplateau.runs.rows import COLUMNS
+from eulerplateau.runs.spec import RunSpec
+from eulerplateau.settings import validate
+from tests.helpers import shapes
+
+TWIST = ("twist_energy", "writhe", "link", "twist_moment")
+
+
+@pytest.fixture(scope="module")
+def mesh(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    points, triangles = shapes.disk_points(5)
+    path = tmp_path_factory.mktemp("mesh") / "disk.vtp"
+    write_mesh(shapes.mesh_of(points * [1.6, 1.0], triangles), path)
+    return path
+
+
+def spec(mesh: Path, loads: list[float], **loop: float) -> RunSpec:
+    said = {"mesh": {"file": str(mesh)}, "loop": loop, "sweep": {"loads": loads}}
+    return validate(said, RunSpec, "run")
+
+
+def test_columns_of_twist_appear_with_its_keys_only(mesh: Path, tmp_path: Path) -> None:
+    run_sweep(spec(mesh, [300.0]), tmp_path / "bare")
+    result = run_sweep(
+        spec(mesh, [300.0, 320.0], twist_ratio=0.75, link=0.3), tmp_path / "rod"
+    )
+    assert (tmp_path / "bare/sweep.csv").read_text().splitlines()[0] == ",".join(COLUMNS)
+    run = read_run(tmp_path / "rod")
+    assert run.kind.columns == (*COLUMNS, *TWIST)
+    assert run.rows == result.rows
+    for row in run.rows:
+        assert row.link == 0.3
+        turned = 2 * np.pi * (row.link - row.writhe)
+        assert row.twist_moment == pytest.approx(1.5 * turned, rel=1e-14)
+        assert row.twist_energy == pytest.approx(0.75 * turned**2, rel=1e-14)
+        parts = row.film_energy + row.bending_energy + row.twist_energy
+        assert row.energy == pytest.approx(parts, rel=1e-14)
+
+
+def test_a_sweep_with_twist_goes_on_to_the_bit(mesh: Path, tmp_path: Path) -> None:
+    loop = {"twist_ratio": 0.75, "link": 0.3}
+    whole = run_sweep(spec(mesh, [300.0, 320.0, 340.0], **loop), tmp_path / "whole")
+    run_sweep(spec(mesh, [300.0, 320.0], **loop), tmp_path / "part")
+    on = run_sweep(
+        spec(mesh, [300.0, 320.0, 340.0], **loop), tmp_path / "part", resume=True
+    )
+    assert on.kept == 2
+    assert [row.energy for row in on.rows] == [row.energy for row in whole.rows]
+    assert on.rows[-1].writhe == whole.rows[-1].writhe
+
+
+def test_branches_of_a_turned_loop_say_nothing_of_mirrors(
+    mesh: Path, tmp_path: Path
+) -> None:
+    window = {"branches": {"load_min": 300.0, "load_max": 1500.0, "special_points": 0}}
+    said = {
+        "mesh": {"file": str(mesh)},
+        "loop": {"twist_ratio": 0.75, "link": 0.0},
+        "sweep": {"loads": [300.0]},
+        **window,
+    }
+    flat = run_branches(validate(said, RunSpec, "run"), tmp_path / "flat")
+    assert any("mirror" in point["breaks"] for point in flat.special)
+    said["loop"] = {"twist_ratio": 0.75, "link": 0.3}
+    turned = run_branches(validate(said, RunSpec, "run"), tmp_path / "turned")
+    assert {row.link for row in turned.rows} == {0.3}
+    told = "".join(point["breaks"] + point["keeps"] for point in turned.special)
+    assert "mirror" not in told
+    assert "inversion" not in told
+
+
+def test_an_ensemble_over_link_joins_in_one_table(mesh: Path, tmp_path: Path) -> None:
+    (tmp_path / "e.toml").write_text(
+        f'[mesh]\nfile = "{mesh}"\n[loop]\ntwist_ratio = 0.75\n'
+        "[sweep]\nloads = [300]\n[grid]\nloop.link = [0.0, 0.2]\n"
+    )
+    result = run_ensemble(load_ensemble(tmp_path / "e.toml"), tmp_path / "out")
+    assert {"loop.link", *TWIST} <= set(result.table.columns)
+    assert [line["link"] for line in result.table.lines] == [0.0, 0.2]
+
+
+def test_turns_without_a_rigidity_are_refused(mesh: Path) -> None:
+    with pytest.raises(SpecError, match=r"loop\.link.*twist_ratio"):
+        spec(mesh, [300.0], link=1.0)
+    with pytest.raises(SpecError, match="twist_ratio"):
+        spec(mesh, [300.0], twist_ratio=-1.0)

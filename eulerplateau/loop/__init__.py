@@ -2,7 +2,7 @@
 
     loop.py      the loop itself: rest lengths, curvature's weights, how sharply it turns
     energy.py    an energy as a sum of terms, with its constraint and its free motions:
-                 write another `Term` (term.py) in a file of its own to add to the physics of the loop
+                 write another `Term` (term.py) in a file of its own to add to the physics
     twist.py     of a rod that was turned before it was welded, by its writhe
     bending.py   the bending term, and the energy of a loop that keeps its lengths
     lengths.py   how the lengths of its edges are kept, or not; how a loop is closed again

@@ -15,14 +15,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.film import Film, make_film
-from eulerplateau.loop import (
-    Loop,
-    PlaneTwist,
-    Twist,
-    kernels,
-    largest_turning,
-    remove_sliding,
-)
+from eulerplateau.loop import Loop, kernels, largest_turning, remove_sliding
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers.equilibrium import (
     LARGEST_LOAD,
@@ -253,5 +246,8 @@ def _loop(disk: Disk, in_plane: bool, twist_ratio: float | None, link: float) ->
         raise SpecError("twist_ratio", f"found {twist_ratio:g}; should be positive")
     if not np.isfinite(link):
         raise SpecError("link", f"found {link:g}; should be a number of turns")
+    # Loaded for such loops only.
+    from eulerplateau.loop import PlaneTwist, Twist
+
     twist = PlaneTwist if in_plane else Twist
     return Loop(disk.rest_lengths, {"twist": twist(bare, twist_ratio, link)})

@@ -65,7 +65,9 @@ def test_the_flat_disk_is_lost_at_its_critical_link_with_order_2(
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.1)
 
 
-def twisted(link: float, ratio: float = ROUND, flip: int = 1) -> tuple[Problem, Equilibrium]:
+def twisted(
+    link: float, ratio: float = ROUND, flip: int = 1
+) -> tuple[Problem, Equilibrium]:
     """A film out of its plane: springs on an elongated disk, from a twisted start."""
     points, triangles = shapes.disk_points(8)
     mesh = shapes.mesh_of(points * [2.0, 1.0], triangles)

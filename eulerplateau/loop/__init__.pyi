@@ -3,6 +3,7 @@ from .bending import Bending as Bending, inextensible as inextensible
 from .edges import Edges as Edges, edges_of as edges_of
 from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
+from .frames import directors as directors
 from .free_bending import FreeBending as FreeBending
 from .lengths import (
     Lengths as Lengths,

@@ -85,5 +85,9 @@ class OwnTerm(Term):
         """Return what tables say of it, by the names of their columns."""
 
     @abstractmethod
+    def fields(self, x: FloatArray) -> Mapping[str, FloatArray]:
+        """Return what shapes say of it: vectors (n, 3) on the loop, by their names."""
+
+    @abstractmethod
     def pinched(self, x: FloatArray) -> bool:
         """Return whether the loop meets itself where that ends what the term says."""

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.frames import directors
 from eulerplateau.loop.loop import Loop, backward_differences, differences
 from eulerplateau.loop.term import OwnTerm
 from eulerplateau.loop.writhe_kernels import (
@@ -93,6 +94,10 @@ class Twist(OwnTerm):
             "link": self.link,
             "twist_moment": self.moment(x),
         }
+
+    def fields(self, x: FloatArray) -> Mapping[str, FloatArray]:
+        """Return which way the rod points, at each vertex that of the edge behind it."""
+        return {"director": directors(x, self.link)}
 
     def pinched(self, x: FloatArray) -> bool:
         """Return whether strands meet: without thickness no twist is held beyond that."""

@@ -167,6 +167,25 @@ def add_edge_blocks(
 
 
 @njit(cache=True)
+def transported(tangents: FloatArray, first: FloatArray) -> FloatArray:
+    """Return a direction across each edge (n, 3), none turned about it from the one before.
+
+    tangents : (n, 3), unit; first : (3,), across the first edge
+    """
+    n = tangents.shape[0]
+    found = np.empty((n, 3))
+    found[0] = first
+    for i in range(n - 1):
+        # The least rotation that takes t to u, of what lies across t.
+        t, u, d = tangents[i], tangents[i + 1], found[i]
+        along = d[0] * u[0] + d[1] * u[1] + d[2] * u[2]
+        width = 1 + t[0] * u[0] + t[1] * u[1] + t[2] * u[2]
+        for k in range(3):
+            found[i + 1, k] = d[k] - along * (t[k] + u[k]) / width
+    return found
+
+
+@njit(cache=True)
 def _tangents(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
     n = edges.shape[0]
     tangent, length = np.empty((n, 3)), np.empty(n)

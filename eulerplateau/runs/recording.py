@@ -191,13 +191,12 @@ class Recorder(Generic[R]):
     ) -> R:
         """Write an equilibrium, modes as its fields; `columns` are the row type's own."""
         measured = asdict(self.measurer.measure(found.shape))
-        for term in self.problem.loop.terms.values():
-            columns |= term.columns(found.shape.x_loop)
+        own, fields = self.problem.said_of_loop(found.shape)
         step, load = len(self.run.rows), self.problem.film.load
-        row = make_row(step, found, load, self.row_type, measured | columns)
+        row = make_row(step, found, load, self.row_type, measured | columns | own)
         disk, rest = self.measurer.disk_of(found.shape), self.problem.disk.digest
         state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
-        self.run.folder.record(row, disk, found.shape.x, modes, rest, state)
+        self.run.folder.record(row, disk, found.shape.x, {**modes, **fields}, rest, state)
         self.run.rows.append(row)
         return row
 

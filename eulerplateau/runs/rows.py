@@ -123,6 +123,11 @@ class Row:
         return float(getattr(self, self.quantity))
 
     @property
+    def turns(self) -> float | None:
+        """Turns the loop was given before it was welded, if it resists twist."""
+        return None
+
+    @property
     def load_energy(self) -> float:
         """The part of the energy that is proportional to the load."""
         return self.film_energy
@@ -171,6 +176,11 @@ class _OfTwist:
     writhe: float
     link: float
     twist_moment: float
+
+    @property
+    def turns(self) -> float | None:
+        """Turns the loop was given before it was welded."""
+        return self.link
 
 
 @dataclass(frozen=True)

@@ -112,6 +112,20 @@ class Problem:
             forces.append(force)
         return forces
 
+    def said_of_loop(self, shape: Shape) -> tuple[dict[str, float], dict[str, FloatArray]]:
+        """Return what that says in tables and, as fields (n_v, 3), in shapes.
+
+        Fields are NaN inside the film.
+        """
+        columns: dict[str, float] = {}
+        fields: dict[str, FloatArray] = {}
+        for term in self.loop.terms.values():
+            columns |= term.columns(shape.x_loop)
+            for name, on_loop in term.fields(shape.x_loop).items():
+                fields[name] = np.full_like(shape.x, np.nan)
+                fields[name][shape.loop] = on_loop
+        return columns, fields
+
     def tension_force(self, shape: Shape, tensions: FloatArray) -> FloatArray:
         """Return J^T lambda (n_v, 3) for the tensions lambda (n_b,) of the loop's edges."""
         force = np.zeros_like(shape.x)

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from eulerplateau.errors import SpecError
-from eulerplateau.mesh import write_mesh
+from eulerplateau.loop import directors
+from eulerplateau.mesh import read_vtp, write_mesh
+from eulerplateau.pictures.film_pictures import FILM
 from eulerplateau.runs import read_run, run_branches, run_sweep
 from eulerplateau.runs.ensembles import load_ensemble, run_ensemble
 from eulerplateau.runs.rows import COLUMNS
@@ -97,3 +99,24 @@ def test_turns_without_a_rigidity_are_refused(mesh: Path) -> None:
         spec(mesh, [300.0], link=1.0)
     with pytest.raises(SpecError, match="twist_ratio"):
         spec(mesh, [300.0], twist_ratio=-1.0)
+
+
+def test_shapes_say_which_way_the_rod_points_and_renders_mark_it(
+    mesh: Path, tmp_path: Path
+) -> None:
+    run_sweep(spec(mesh, [300.0], twist_ratio=0.75, link=0.3), tmp_path / "rod")
+    run = read_run(tmp_path / "rod")
+    stored = read_vtp(run.shape_path(run.rows[0]))
+    loop = stored.lines[0][:-1]
+    director = stored.point_fields["director"]
+    assert np.isnan(np.delete(director, loop, axis=0)).all()
+    expected = directors(stored.points[loop], 0.3)
+    np.testing.assert_allclose(director[loop], expected, atol=1e-12)
+    marks = FILM.stage.marks(run.rows[0], stored.points[loop])
+    assert marks is not None
+    np.testing.assert_array_equal(marks, expected)
+    run_sweep(spec(mesh, [300.0]), tmp_path / "bare")
+    bare = read_run(tmp_path / "bare")
+    assert FILM.stage.marks(bare.rows[0], stored.points[loop]) is None
+    fields = read_vtp(bare.shape_path(bare.rows[0])).point_fields
+    assert "director" not in fields

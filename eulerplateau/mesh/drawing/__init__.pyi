@@ -6,6 +6,7 @@ from .film import (
     GLOSS as GLOSS,
     LOOP as LOOP,
     load_pyvista as load_pyvista,
+    loop_stripe as loop_stripe,
     loop_tube as loop_tube,
     point_camera as point_camera,
 )

@@ -71,6 +71,19 @@ def loop_tube(x_loop: FloatArray, colours: Mapping[str, NDArray[Any]] | None = N
     return wire.tube(radius=LOOP_RADIUS, n_sides=24)
 
 
+def loop_stripe(x_loop: FloatArray, across: FloatArray) -> Any:
+    """Return a stripe (PolyData) along the tube of `loop_tube`, from the first edge on.
+
+    It lies where directions (n_b, 3) across the edges point. It is open: where the rod was
+    welded its ends need not meet.
+    """
+    pyvista = load_pyvista()
+    middles = 0.5 * (x_loop + np.roll(x_loop, -1, axis=0))
+    points = middles + 0.8 * LOOP_RADIUS * across
+    line = pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
+    return line.tube(radius=0.4 * LOOP_RADIUS, n_sides=12)
+
+
 def point_camera(plotter: Any, view: View) -> None:
     """Let a plotter see what a view shows."""
     plotter.camera.parallel_projection = True

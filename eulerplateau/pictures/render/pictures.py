@@ -125,7 +125,9 @@ class RunPictures:
     def _picture(self, scene: Scene, place: int, shape: Shape, view: View) -> Pixels:
         values = self.fields.get(place)
         film = coloured_film(shape, view.eye, self.colour, values, self.scale)
-        pixels = scene.pixels(shape, film, loop_colours(shape, values, self.scale), view)
+        marks = self.stage.marks(self.run.rows[place], shape.x_loop)
+        colours = loop_colours(shape, values, self.scale)
+        pixels = scene.pixels(shape, film, colours, marks, view)
         return captioned(pixels, caption(self.run.rows[place]), self.scale)
 
     def _write(self, name: str, suffix: str, content: bytes) -> None:

@@ -15,11 +15,14 @@ from eulerplateau.mesh.drawing import (
     GLOSS,
     View,
     load_pyvista,
+    loop_stripe,
     loop_tube,
     point_camera,
 )
 from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.pictures.render.colours import PaintedFilm
+
+_STRIPE = "#F7F7F7"
 
 Pixels = NDArray[np.uint8]
 
@@ -53,9 +56,17 @@ class Scene:
         self._plotter.close()
 
     def pixels(
-        self, shape: Shape, film: PaintedFilm, loop_rgb: FloatArray, view: View
+        self,
+        shape: Shape,
+        film: PaintedFilm,
+        loop_rgb: FloatArray,
+        marks: FloatArray | None,
+        view: View,
     ) -> Pixels:
-        """Return an image (height, width, 3) of the film and its loop (n_b, 3 colours)."""
+        """Return an image (height, width, 3) of the film and its loop (n_b, 3 colours).
+
+        With `marks`, directions (n_b, 3) across its edges, a stripe runs along it there.
+        """
         plotter = self._plotter
         # Or each change would be rendered at once.
         plotter.suppress_rendering = True
@@ -63,6 +74,8 @@ class Scene:
         plotter.add_mesh(_surface(film), scalars="rgba", rgb=True, lighting=False)
         tube = loop_tube(shape.x_loop, {"rgb": _bytes(loop_rgb)})
         plotter.add_mesh(tube, scalars="rgb", rgb=True, smooth_shading=True, **GLOSS)
+        if marks is not None:
+            plotter.add_mesh(loop_stripe(shape.x_loop, marks), color=_STRIPE, **GLOSS)
         point_camera(plotter, view)
         plotter.suppress_rendering = False
         plotter.render()

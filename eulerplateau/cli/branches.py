@@ -76,7 +76,7 @@ def _explore(run: RunSpec, folder: Path, quiet: bool, overwrite: bool) -> Explor
         return run_branches(run, folder, overwrite=overwrite)
     from tqdm import tqdm
 
-    with tqdm(desc=folder.name, unit="point", dynamic_ncols=True) as bar:
+    with tqdm(desc=folder.name, unit="point", dynamic_ncols=True, disable=None) as bar:
 
         def show(row: BranchRow) -> None:
             bar.set_postfix_str(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from eulerplateau.cli.batch import OVERWRITE, QUIET, before
+from eulerplateau.cli.batch import OVERWRITE, QUIET, before, begin
 from eulerplateau.cli.overrides import load_single, setting, single_values
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ def catalogue(
 
     run = load_single(spec, settings, load_run)
     folder = out or spec.with_name(f"{run_name(spec, single_values(settings))}-catalogue")
+    begin(folder)
     result = _listed(run, folder, quiet, overwrite)
     drawn = ["catalogue.csv", "counts.csv", "catalogue.pvd"]
     if pictures and result.rows:
@@ -66,7 +67,7 @@ def _listed(run: RunSpec, folder: Path, quiet: bool, overwrite: bool) -> Catalog
         return run_catalogue(run, folder, overwrite=overwrite)
     from tqdm import tqdm
 
-    with tqdm(desc=folder.name, unit="search", dynamic_ncols=True) as bar:
+    with tqdm(desc=folder.name, unit="search", dynamic_ncols=True, disable=None) as bar:
 
         def show(load: float) -> None:
             bar.set_postfix_str(f"load {load:g}")

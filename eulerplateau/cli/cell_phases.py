@@ -60,7 +60,7 @@ def _computed(run: Any, folder: Path, quiet: bool) -> PhaseDiagram:
         return run_phase_diagram(run, folder)
     from tqdm import tqdm
 
-    with tqdm(desc=folder.name, unit="point", dynamic_ncols=True) as bar:
+    with tqdm(desc=folder.name, unit="point", dynamic_ncols=True, disable=None) as bar:
 
         def show(point: str) -> None:
             bar.set_postfix_str(point)

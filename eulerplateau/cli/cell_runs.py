@@ -156,7 +156,7 @@ def _shown(
         return run(lambda row: None)
     from tqdm import tqdm
 
-    with tqdm(dynamic_ncols=True, **options) as bar:
+    with tqdm(dynamic_ncols=True, disable=None, **options) as bar:
 
         def show(row: CellRow) -> None:
             bar.set_postfix_str(

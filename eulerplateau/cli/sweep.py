@@ -83,7 +83,9 @@ def _run(
     from tqdm import tqdm
 
     total = len(spec.loads())
-    with tqdm(total=total, desc=folder.name, unit="load", dynamic_ncols=True) as bar:
+    with tqdm(
+        total=total, desc=folder.name, unit="load", dynamic_ncols=True, disable=None
+    ) as bar:
 
         def show(row: Row) -> None:
             bar.set_postfix_str(

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import csv
 import os
-import pty
 import signal
 import subprocess
-import termios
 import time
 from pathlib import Path
 
@@ -16,7 +14,7 @@ import pytest
 from eulerplateau.mesh import mesh_polygon, write_mesh
 from eulerplateau.runs.ensembles import running
 from tests.helpers.command import Shell, command_line, run_here
-from tests.helpers.processes import PATIENCE, started
+from tests.helpers.processes import PATIENCE, shown_at_a_terminal, started
 
 ROOT = Path(__file__).parents[2]
 FILM = """
@@ -162,20 +160,7 @@ def test_extra_that_is_missing_is_named(
 
 @pytest.mark.slow
 def test_people_see_a_bar_with_the_time_left(spec: Path) -> None:
-    ours, theirs = pty.openpty()
-    termios.tcsetwinsize(theirs, (24, 120))
-    with subprocess.Popen(
-        command_line("ensemble", spec), stderr=theirs, stdout=subprocess.DEVNULL
-    ) as process:
-        os.close(theirs)
-        shown = b""
-        while True:
-            try:
-                shown += os.read(ours, 65536)
-            except OSError:  # the terminal's other end is closed
-                break
-    os.close(ours)
-    assert process.returncode == 0
+    shown = shown_at_a_terminal(command_line("ensemble", spec))
     assert b"films:" in shown
     assert b"4/4" in shown
     assert b"<" in shown.rpartition(b"4/4")[2]  # time gone < time left

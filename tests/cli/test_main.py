@@ -14,6 +14,7 @@ from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.rows import COLUMNS
 from eulerplateau.runs.table import read_rows
 from tests.helpers.command import Shell, command_line, run_here, run_in_shell
+from tests.helpers.processes import shown_at_a_terminal
 
 
 def sweep(*words: object, cwd: Path | None = None) -> Shell:
@@ -75,7 +76,15 @@ def test_without_quiet_it_reports_on_what_it_did(spec: Path) -> None:
     result = run_here("sweep", "--no-pictures", spec)
     assert result.returncode == 0
     assert str(spec.with_suffix("")) in result.stdout
-    assert "|kappa_n|" in result.stderr  # the progress bar
+    # A bar is for people: this is no terminal.
+    assert result.stderr == ""
+
+
+@pytest.mark.slow
+def test_at_a_terminal_a_sweep_shows_how_far_it_is(spec: Path) -> None:
+    shown = shown_at_a_terminal(command_line("sweep", "--no-pictures", spec))
+    assert b"|kappa_n|" in shown
+    assert b"100%" in shown
 
 
 def test_out_names_the_folder_and_the_solver_can_be_chosen(

@@ -6,12 +6,12 @@ symmetry (kappa_n of a film that leaves its plane) and n = 1 for what is even (<
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import least_squares
 
 from eulerplateau.arrays import FloatArray
 
@@ -25,6 +25,13 @@ _LEAST_GAP, _WIDEST_GAP = 1e-7, 10.0
 _STARTS = 24
 # Bound on the exponent, so that no power overflows on the way.
 _STEEPEST = 5.0
+# Steps of a fit and how long one may be; its first damping, the least, and the largest,
+# with which a step is none.
+_STEPS, _LONGEST = 100, 1.0
+_DAMPING, _LEAST, _STIFFEST = 1e-3, 1e-15, 1e10
+_EPS = float(np.finfo(np.float64).eps)
+
+Misfit = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 
 @dataclass(frozen=True)
@@ -134,20 +141,22 @@ def _fit_window(loads: FloatArray, values: FloatArray, onset: float | None) -> W
             return onset
         return float(loads[0]) - span * float(np.exp(parameters[1]))
 
-    def misfit(parameters: FloatArray) -> FloatArray:
-        return _project(loads, values, parameters[0], onset_at(parameters))[1]
+    def misfit(parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
+        at = onset_at(parameters)
+        _, left, slopes = _project(loads, values, parameters[0], at)
+        slopes[1] *= at - float(loads[0])
+        return left, slopes[: len(parameters)]
 
     # A wide gap must not push the onset below zero.
     widest = min(_WIDEST_GAP, 0.99 * float(loads[0]) / span)
-    lower, upper = [-_STEEPEST, np.log(_LEAST_GAP)], [_STEEPEST, np.log(widest)]
+    bounds = np.array([[-_STEEPEST, np.log(_LEAST_GAP)], [_STEEPEST, np.log(widest)]])
     start = _start(loads, values, np.geomspace(_LEAST_GAP, widest, _STARTS + 2)[1:-1])
     if onset is not None:
-        lower, upper, start = lower[:1], upper[:1], start[:1]
-    found = least_squares(
-        misfit, start, "3-point", (lower, upper), xtol=1e-14, ftol=1e-14, gtol=1e-14
-    )
-    exponent, at = float(found.x[0]), onset_at(found.x)
-    errors = _standard_errors(found.jac, found.fun, len(loads) - 2 - len(start))
+        bounds, start = bounds[:, :1], start[:1]
+    found = _least_squares(misfit, start, bounds)
+    exponent, at = float(found[0]), onset_at(found)
+    left, slopes = misfit(found)
+    errors = _standard_errors(slopes.T, left, len(loads) - 2 - len(start))
     a, c = _project(loads, values, exponent, at)[0]
     farthest = float(loads[-1]) / at - 1
     return WindowFit(
@@ -167,33 +176,86 @@ def _start(loads: FloatArray, values: FloatArray, gaps: FloatArray) -> FloatArra
 
     To first order in b u the law is log value = log A + n log u + b u: a linear fit.
     """
+    u = _scaled_distance(loads, loads[0] - gaps[:, None] * np.ptp(loads))
+    q, r = np.linalg.qr(np.stack([np.log(u), np.ones_like(u), u], axis=-1))
     logs = np.log(values / values[-1])
-    best, least = np.zeros(2), np.inf
-    for gap in gaps:
-        u = _scaled_distance(loads, float(loads[0] - gap * np.ptp(loads)))
-        columns = np.column_stack([np.log(u), np.ones_like(u), u])
-        fit = np.linalg.lstsq(columns, logs)[0]
-        misfit = float(np.linalg.norm(columns @ fit - logs))
-        if misfit < least:
-            best, least = np.array([fit[0], np.log(gap)]), misfit
-    best[0] = np.clip(best[0], -0.9 * _STEEPEST, 0.9 * _STEEPEST)
-    return best
+    part = logs @ q
+    misfits = np.linalg.norm((q @ part[..., None])[..., 0] - logs, axis=1)
+    best = int(misfits.argmin())
+    exponent = float(np.linalg.solve(r[best], part[best])[0])
+    within = np.clip(exponent, -0.9 * _STEEPEST, 0.9 * _STEEPEST)
+    return np.array([within, np.log(gaps[best])])
+
+
+def _least_squares(misfit: Misfit, x: FloatArray, bounds: FloatArray) -> FloatArray:
+    """Return the parameters (m,) within bounds (2, m) of the least sum of squares.
+
+    By Levenberg and Marquardt's method: Gauss and Newton's steps, damped as much as it
+    takes for the sum to fall, until it does so by rounding.
+    """
+    (left, slopes), damping = misfit(x), _DAMPING
+    for _ in range(_STEPS):
+        pull = slopes @ left
+        stays = ((x <= bounds[0]) & (pull > 0)) | ((x >= bounds[1]) & (pull < 0))
+        slopes[stays] = pull[stays] = 0.0
+        normal = slopes @ slopes.T
+        size = np.sqrt(np.where(normal.diagonal() > 0, normal.diagonal(), 1.0))
+        normal = normal / (size * size[:, None]) + damping * np.eye(len(x))
+        step = np.linalg.solve(normal, -pull / size) / size
+        step *= min(1.0, _LONGEST / max(float(np.abs(step).max()), 1e-300))
+        after = np.minimum(np.maximum(x + step, bounds[0]), bounds[1])
+        there, steeper = misfit(after)
+        gained = float(left @ left - there @ there)
+        # Of deviations that are known to a few eps.
+        rounding = 8 * _EPS * float(np.abs(left).sum() + len(left) * _EPS)
+        if gained >= 0:
+            x, left, slopes, damping = after, there, steeper, max(0.01 * damping, _LEAST)
+        else:
+            damping *= 10
+        if abs(gained) <= rounding or damping > _STIFFEST:
+            break
+    return x
 
 
 def _project(
     loads: FloatArray, values: FloatArray, exponent: float, onset: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return a, c (2,) that fit (a + c u) u^n best, and law / value - 1 (n,)."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return a, c (2,) that fit (a + c u) u^n best, and law / value - 1 (n,).
+
+    And this misfit's derivatives (2, n) by the exponent and the onset. With C = Q R the
+    columns that a and c multiply and r the misfit they leave, dr = (1 - Q Q^T) dC (a, c)
+    - Q R^-T dC^T r (Golub and Pereyra 1973). Of two columns Gram and Schmidt's Q will do.
+    """
     u = _scaled_distance(loads, onset)
-    power = u**exponent / values
-    columns = np.column_stack([power, power * u])
-    best = np.asarray(np.linalg.lstsq(columns, np.ones_like(u))[0], dtype=np.float64)
-    misfit: FloatArray = columns @ best - 1
-    return best, misfit
+    first = u**exponent / values
+    second = first * u
+    r11 = np.sqrt(first @ first)
+    q1 = first / r11
+    r12 = q1 @ second
+    q2 = second - r12 * q1
+    r22 = np.sqrt(q2 @ q2)
+    q2 /= r22
+    c = q2.sum() / r22
+    a = (q1.sum() - r12 * c) / r11
+    misfit = a * first + c * second - 1
+
+    def slope(by_first: FloatArray, by_second: FloatArray) -> FloatArray:
+        moved = a * by_first + c * by_second
+        w1 = misfit @ by_first / r11
+        w2 = (misfit @ by_second - r12 * w1) / r22
+        left: FloatArray = moved - (q1 @ moved + w1) * q1 - (q2 @ moved + w2) * q2
+        return left
+
+    log, rate = np.log(u), (u - 1) / ((loads[-1] - onset) * u)
+    slopes = [
+        slope(first * log, second * log),
+        slope(exponent * first * rate, (exponent + 1) * second * rate),
+    ]
+    return np.array([a, c]), misfit, np.array(slopes)
 
 
-def _scaled_distance(loads: FloatArray, onset: float) -> FloatArray:
-    """Return u (n,), eps over its largest value."""
+def _scaled_distance(loads: FloatArray, onset: float | FloatArray) -> FloatArray:
+    """Return u (n,), eps over its largest value; of onsets (k, 1) a row (k, n) for each."""
     u: FloatArray = (loads - onset) / (loads[-1] - onset)
     return u
 
@@ -207,7 +269,7 @@ def _standard_errors(
     """
     scatter = float(misfit @ misfit) / degrees_of_freedom
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
-    if sizes[-1] <= np.finfo(np.float64).eps * sizes[0]:
+    if sizes[-1] <= _EPS * sizes[0]:
         return np.full(len(directions), np.inf)
     errors: FloatArray = np.sqrt(scatter * ((directions / sizes[:, None]) ** 2).sum(axis=0))
     return errors

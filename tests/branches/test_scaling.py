@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.scaling import PowerLaw, fit_power
@@ -100,6 +101,27 @@ def test_the_truth_lies_within_the_stated_uncertainty(exponent, noise, given):
         assert abs(law.onset - onset) <= law.onset_error + 1e-12 * onset or noise
     # The uncertainty is meant to hold 95 times in a hundred: two misses of ten are rare.
     assert sum(inside) >= 9
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-3, 3e-2])
+def test_no_law_nearby_fits_the_points_better_and_errors_are_those_of_all_parameters(
+    noise,
+):
+    _, load, value = made_up(0.5, noise, np.random.default_rng(6))
+    law = fit_power(load, value).windows[0]
+    found = law.exponent, np.log(load[0] - law.onset), law.amplitude, law.correction
+
+    def misfit(parameters):
+        exponent, gap, amplitude, correction = parameters
+        eps = load / (load[0] - np.exp(gap)) - 1
+        return amplitude * eps**exponent * (1 + correction * eps) / value - 1
+
+    least = least_squares(misfit, np.multiply(found, 1.001), x_scale="jac", ftol=1e-12)
+    assert misfit(found) @ misfit(found) <= 2 * least.cost * (1 + 1e-9)
+    covariance = np.linalg.inv(least.jac.T @ least.jac) * 2 * least.cost / (len(load) - 4)
+    exponent_error, gap_error = np.sqrt(covariance.diagonal()[:2])
+    assert law.exponent_error == pytest.approx(exponent_error, rel=1e-4)
+    assert law.onset_error == pytest.approx(gap_error * (load[0] - law.onset), rel=1e-4)
 
 
 def test_the_papers_exponent_is_told_from_one_half():

@@ -9,9 +9,11 @@ from scipy.sparse import csr_array
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import FilmFamily, film_point
-from eulerplateau.branches.continuation import follow
+from eulerplateau.branches.continuation import follow, released
+from eulerplateau.branches.film_family import family_near
 from eulerplateau.branches.point import BranchPoint, Direction, StepControl, correct
-from eulerplateau.branches.special import SpecialPoint, branches_from, special_points
+from eulerplateau.branches.special import SpecialPoint, special_points
+from eulerplateau.exact.conformal.equilibrium import ConformalFilm
 from eulerplateau.film.tiling import Tiling
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
@@ -74,13 +76,23 @@ def twist_point(planar: BranchPoint) -> SpecialPoint:
     raise AssertionError("no bifurcation met")
 
 
-def twisted_from_two_lobed(special: SpecialPoint, load: float) -> BranchPoint:
-    """The point of the branch that leaves the two-lobed film, at a load below."""
-    for point in follow(next(branches_from(special, CONTROL)), CONTROL):
-        if point.value < load:
-            break
-    still = Direction(np.zeros_like(point.x), CONTROL.unit)
-    return _made_anew(point, point.x, load, still)
+def on_the_exact_loop(mesh: Disk, exact: ConformalFilm, angle: float) -> BranchPoint:
+    """The film on a mesh that is next to an exact one, turned by `angle` on the mesh."""
+    problem, whole = Problem(mesh, "area"), 2 * np.pi
+    phi = np.linspace(0.0, whole, 4097)
+    loop = exact.basis.at(exact.coefficients, phi).x
+    arc = np.cumsum(np.linalg.norm(np.diff(loop, axis=0, prepend=loop[:1]), axis=1))
+    first = mesh.x[mesh.loop[0]]
+    place = np.cumsum(mesh.rest_lengths) - mesh.rest_lengths
+    place += (np.arctan2(first[1], first[0]) - angle) / whole
+    x_loop = [np.interp(place, arc / arc[-1], x, period=1.0) for x in loop.T]
+    spanned = Problem(mesh, "dirichlet").film.of_loop(mesh.shape)
+    family, x = family_near(problem, spanned.shape(np.stack(x_loop, axis=1)))
+    still = Direction(np.zeros_like(x), CONTROL.unit)
+    point = correct(family, x, exact.load, still, CONTROL)
+    assert point is not None
+    point = released(point, CONTROL)
+    return _made_anew(point, point.x, exact.load, still)
 
 
 def twisted_disk(mesh: Disk, size: float, angle: float = 0.0) -> BranchPoint:

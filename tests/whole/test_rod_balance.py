@@ -25,21 +25,20 @@ from eulerplateau.loop import Loop
 from eulerplateau.mesh.curvature import LoopFrame, loop_frame
 from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes, soap_films
+from tests.helpers.conformal_films import twisted
 
-ANGLES = (0.0, 0.35, 0.7)
-
-
-def two_lobed(mesh: Disk, angle: float) -> BranchPoint:
-    planar = soap_films.two_lobed(mesh, 1750.0, angle)
-    special = soap_films.twist_point(planar)
-    return soap_films.twisted_from_two_lobed(special, 1700.0)
+# Of the film against its mesh: a sixth of a turn, or a twelfth, would be no different one.
+ANGLE = 0.35
 
 
-def disk(mesh: Disk, angle: float) -> BranchPoint:
-    return soap_films.twisted_disk(mesh, 0.03, angle)
+def two_lobed(mesh: Disk) -> BranchPoint:
+    return soap_films.on_the_exact_loop(mesh, twisted(1700.0).film, ANGLE)
 
 
-# A disk is soon twisted; the other film is followed for a second a ring and angle.
+def disk(mesh: Disk) -> BranchPoint:
+    return soap_films.twisted_disk(mesh, 0.03, ANGLE)
+
+
 RINGS = {two_lobed: (6, 8, 11), disk: (6, 9, 13)}
 
 
@@ -62,51 +61,53 @@ def frame_of(point: BranchPoint, mesh: Disk) -> LoopFrame:
 
 
 def imbalance(point: BranchPoint, frame: LoopFrame) -> tuple[float, float]:
-    """Relative errors of F' = -sigma T: of F itself, and of F' along T, both at worst."""
+    """Relative errors of F' = -sigma T, r.m.s.: of F itself, and of F' along T."""
     force = stress_resultant(point)
     jump = force - np.roll(force, 1, axis=0)
     left = jump / point.value + frame.conormal * frame.mean_lengths[:, None]
     summed = np.cumsum(left, axis=0)
     summed -= summed.mean(axis=0)
     inwards = (left * frame.conormal).sum(axis=1) / frame.mean_lengths
-    return float(np.abs(summed).max()), float(np.abs(inwards).max())
+    return (
+        float(np.sqrt((summed**2).sum(axis=1).mean())),
+        float(np.sqrt((inwards**2).mean())),
+    )
 
 
 @pytest.mark.parametrize("leave", [two_lobed, disk])
 @pytest.mark.parametrize("even", [True, False], ids=["even", "uneven"])
 def test_rod_balances_the_films_pull_at_second_order(
-    leave: Callable[[Disk, float], BranchPoint], even: bool
+    leave: Callable[[Disk], BranchPoint], even: bool
 ) -> None:
-    """On the branches that leave the two-lobed film, and the disk at 96 pi^3; and no net
-    normal curvature, to the second order at least, over three ways the film may lie."""
-    forces, pulls, curvatures = [], [], []
+    """On the branches that leave the two-lobed film, and the disk at 96 pi^3.
+
+    And no net normal curvature, to one part in as many as the loop has edges: what is left
+    of it comes from where a mesh happens to put its vertices, so that it falls with their
+    number, but not from one mesh to the next.
+    """
+    forces, pulls = [], []
     for rings in RINGS[leave]:
         mesh = soap_films.irregular_disk(rings)
         if not even:
             mesh = shapes.mesh_of(*shapes.disk_points(rings, jitter=0.15))
-        found = []
-        for angle in ANGLES:
-            point = leave(mesh, angle)
-            frame = frame_of(point, mesh)
-            net = frame.kappa_n @ frame.mean_lengths
-            found.append([*imbalance(point, frame), net])
-            # Twisted, and far from flat: the net curvature is a sum that cancels.
-            assert np.abs(frame.kappa_n) @ frame.mean_lengths > 0.7
-            assert point.stability.n_unstable > 0
-        for column, values in zip(
-            (forces, pulls, curvatures), np.transpose(found), strict=True
-        ):
-            column.append(float(np.sqrt((values**2).mean())))
+        point = leave(mesh)
+        frame = frame_of(point, mesh)
+        for column, value in zip((forces, pulls), imbalance(point, frame), strict=True):
+            column.append(value)
+        # Twisted, and far from flat: the net curvature is a sum that cancels.
+        bent = np.abs(frame.kappa_n) @ frame.mean_lengths
+        assert bent > 0.7
+        assert abs(frame.kappa_n @ frame.mean_lengths) < bent / mesh.n_b
+        assert point.stability.n_unstable > 0
     sizes = [1 / rings for rings in RINGS[leave]]
-    assert shapes.fitted_order(sizes, forces) == pytest.approx(2.0, abs=0.25)
-    assert shapes.fitted_order(sizes, pulls) == pytest.approx(2.0, abs=0.25)
-    assert shapes.fitted_order(sizes, curvatures) > 1.75
+    assert shapes.fitted_order(sizes, forces) == pytest.approx(2.0, abs=0.2)
+    assert shapes.fitted_order(sizes, pulls) == pytest.approx(2.0, abs=0.2)
 
 
 def test_moments_of_the_rod_balance_on_every_loop() -> None:
     """m_v = 2 t_v x K_v, m' = -t x F: an identity of the discrete rod, for any lambda."""
     mesh = soap_films.irregular_disk(6)
-    point = disk(mesh, 0.2)
+    point = disk(mesh)
     loop = loop_of(point)
     tangent = loop.chords(point.x) / loop.rest_lengths[:, None]
     bend = (tangent - np.roll(tangent, 1, axis=0)) / loop.mean_lengths[:, None]

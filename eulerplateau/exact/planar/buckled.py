@@ -53,8 +53,7 @@ def _closed(n: int, imaginary2: float) -> Elastica:
     """Return the closed n-lobed elastica of length 1 with the given imaginary2 / mean^2."""
 
     def turns_too_far(amplitude: float) -> float:
-        shape = Elastica(1.0, amplitude, imaginary2)
-        return float(shape.turning(shape.half_period)) - pi / n
+        return Elastica(1.0, amplitude, imaginary2).half_turn - pi / n
 
     most = 1.0
     while turns_too_far(most) > 0:

@@ -57,6 +57,13 @@ def touching(n: int, phase: float) -> Touching:
     return _of_length_one(n, lobe, length, kappa)
 
 
+@cache
+def at_first_contact(n: int) -> Touching:
+    """Return the half lobe of the buckled loop that first touches itself."""
+    return touching(n, first_contact_phase(n))
+
+
+@cache
 def at_line_contact(n: int) -> Touching:
     """Return the half lobe at the onset of line contact, where kappa = beta = 0."""
     phase = line_contact_phase()
@@ -71,8 +78,7 @@ def first_contact_phase(n: int) -> float:
         return pi
 
     def closes(phase: float) -> float:
-        lobe = _lobe(phase)
-        return float(lobe.turning(lobe.half_period)) - pi / n
+        return _lobe(phase).half_turn - pi / n
 
     return float(brentq(closes, _LOWEST_PHASE, pi, xtol=1e-15, rtol=_EXACT))
 
@@ -97,7 +103,7 @@ def touching_at(n: int, sigma_hat: float) -> Touching:
     low, high = first_contact_phase(n), line_contact_phase()
     # At the ends rounding may leave no change of sign.
     if too_soft(low) >= 0:
-        return touching(n, low)
+        return at_first_contact(n)
     if too_soft(high) <= 0:
         return at_line_contact(n)
     return touching(n, brentq(too_soft, low, high, xtol=1e-15, rtol=_EXACT))
@@ -151,8 +157,8 @@ def _neck(n: int, sigma: float, kappa: float) -> tuple[Elastica, float]:
 
     def turns_too_little(lowest: float) -> float:
         arc, length = half_arc(lowest)
-        ends = arc.turning([arc.half_period, arc.half_period - length])
-        return float(ends[0] - ends[1]) - (pi / n - pi / 2)
+        before = float(arc.turning(arc.half_period - length))
+        return arc.half_turn - before - (pi / n - pi / 2)
 
     size = sigma ** (1 / 3)
     shallow, deep = kappa - 1e-9 * size, kappa - 100 * size

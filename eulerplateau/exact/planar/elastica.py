@@ -79,6 +79,14 @@ class Elastica:
         """Arc length from a maximum of kappa to the next minimum, 2 K(m) / omega."""
         return 2 * float(ellipk(self.m)) / self.frequency
 
+    @cached_property
+    def half_turn(self) -> float:
+        """The angle the tangent turns by from a maximum of kappa to the next minimum."""
+        rest = 1 - self._skew**2
+        even = 2 * float(elliprj(0.0, 1 - self.m, 1.0, 1 / rest))
+        wave = -self._skew / (3 * rest) * even
+        return self.mean * self.half_period + self.amplitude / self.frequency * wave
+
     def scaled(self, size: float) -> Elastica:
         """Return the similar solution `size` times as large (paper, eq. similarity)."""
         return Elastica(self.mean / size, self.amplitude / size, self.imaginary2 / size**2)
@@ -108,14 +116,15 @@ class Elastica:
         With rho^2 + rho'^2 = 1 and g^2 = rho'^2 m + rho^2, the integrand splits into
         mean, a part odd in cn, which is elementary, and one even in cn, of the third kind.
         """
-        s = np.asarray(s, dtype=np.float64)
+        # One number as a number: arithmetic with arrays of one takes ten times as long.
+        s = np.asarray(s, dtype=np.float64)[()]
         sn, cn, dn, _ = ellipj(self.frequency * s, self.m)
         skew2, rest = self._skew**2, 1 - self._skew**2
         g = sqrt(rest * self.m + skew2)
         odd = sqrt(rest) / g * np.arctan(g * sn / (dn * sqrt(rest)))
         # Carlson's R_J reaches from -K to K only: count the half periods before.
-        half_periods = np.round(s / self.half_period)
-        inside = sn * np.where(half_periods % 2 == 0, 1.0, -1.0)
+        half_periods = np.rint(s / self.half_period)
+        inside = sn * (1 - 2 * (half_periods % 2))
         even = inside**3 * elliprj(cn**2, dn**2, 1.0, 1 + skew2 / rest * sn**2)
         even += 2 * half_periods * elliprj(0.0, 1 - self.m, 1.0, 1 / rest)
         wave = odd - self._skew / (3 * rest) * even

@@ -15,9 +15,8 @@ from eulerplateau.exact.checks import finite, whole_number
 from eulerplateau.exact.planar.buckled import buckled, excess, sigma_buckling
 from eulerplateau.exact.planar.contact import (
     Touching,
+    at_first_contact,
     at_line_contact,
-    first_contact_phase,
-    touching,
     touching_at,
 )
 from eulerplateau.exact.planar.halves import (
@@ -184,7 +183,7 @@ def planar_film(lobes: int, tension: float) -> PlanarFilm:
 
 @cache
 def _thresholds(lobes: int) -> Thresholds:
-    contact = touching(lobes, first_contact_phase(lobes)).lobe.sigma
+    contact = at_first_contact(lobes).lobe.sigma
     return Thresholds(
         lobes, sigma_buckling(lobes), contact, at_line_contact(lobes).lobe.sigma
     )
@@ -211,7 +210,7 @@ def _disk(lobes: int, tension: float) -> PlanarFilm:
 
 
 def _buckled(lobes: int, tension: float) -> PlanarFilm:
-    lobe = touching(lobes, first_contact_phase(lobes)).lobe
+    lobe = at_first_contact(lobes).lobe
     shape = buckled(lobes, tension, 0.9 * lobe.imaginary2 / lobe.mean**2)
     energy = 2 * lobes * shape.energy(shape.half_period)
     return PlanarFilm(

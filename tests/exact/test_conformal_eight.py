@@ -74,8 +74,8 @@ def test_impossible_loads_are_refused(load: float) -> None:
 
 def test_barrier_on_the_way_to_it_becomes_a_helicoids() -> None:
     # Strands at a distance w and an angle omega: sigma w^2 / (2 omega) at the top.
-    point, widths, gaps = twisted(1200.0), [], []
-    for load in (1200.0, 1000.0, 850.0):
+    point, widths, gaps = twisted(1400.0), [], []
+    for load in (1200.0, 1100.0, 1000.0):
         point = resolve(go_to_load(point, load, 0.03), 1e-9)
         eight, width = flat_eight(load), waist(point.film)
         helicoid = load * width**2 / (-4 * eight.angle)

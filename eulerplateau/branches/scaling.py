@@ -6,12 +6,12 @@ symmetry (kappa_n of a film that leaves its plane) and n = 1 for what is even (<
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import least_squares
 
 from eulerplateau.arrays import FloatArray
 
@@ -25,13 +25,6 @@ _LEAST_GAP, _WIDEST_GAP = 1e-7, 10.0
 _STARTS = 24
 # Bound on the exponent, so that no power overflows on the way.
 _STEEPEST = 5.0
-# Steps of a fit and how long one may be; its first damping, the least, and the largest,
-# with which a step is none.
-_STEPS, _LONGEST = 100, 1.0
-_DAMPING, _LEAST, _STIFFEST = 1e-3, 1e-15, 1e10
-_EPS = float(np.finfo(np.float64).eps)
-
-Misfit = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 
 @dataclass(frozen=True)
@@ -153,7 +146,15 @@ def _fit_window(loads: FloatArray, values: FloatArray, onset: float | None) -> W
     start = _start(loads, values, np.geomspace(_LEAST_GAP, widest, _STARTS + 2)[1:-1])
     if onset is not None:
         bounds, start = bounds[:, :1], start[:1]
-    found = _least_squares(misfit, start, bounds)
+    found = least_squares(
+        lambda parameters: misfit(parameters)[0],
+        start,
+        lambda parameters: misfit(parameters)[1].T,
+        (bounds[0], bounds[1]),
+        xtol=1e-12,
+        ftol=1e-12,
+        gtol=1e-12,
+    ).x
     exponent, at = float(found[0]), onset_at(found)
     left, slopes = misfit(found)
     errors = _standard_errors(slopes.T, left, len(loads) - 2 - len(start))
@@ -185,36 +186,6 @@ def _start(loads: FloatArray, values: FloatArray, gaps: FloatArray) -> FloatArra
     exponent = float(np.linalg.solve(r[best], part[best])[0])
     within = np.clip(exponent, -0.9 * _STEEPEST, 0.9 * _STEEPEST)
     return np.array([within, np.log(gaps[best])])
-
-
-def _least_squares(misfit: Misfit, x: FloatArray, bounds: FloatArray) -> FloatArray:
-    """Return the parameters (m,) within bounds (2, m) of the least sum of squares.
-
-    By Levenberg and Marquardt's method: Gauss and Newton's steps, damped as much as it
-    takes for the sum to fall, until it does so by rounding.
-    """
-    (left, slopes), damping = misfit(x), _DAMPING
-    for _ in range(_STEPS):
-        pull = slopes @ left
-        stays = ((x <= bounds[0]) & (pull > 0)) | ((x >= bounds[1]) & (pull < 0))
-        slopes[stays] = pull[stays] = 0.0
-        normal = slopes @ slopes.T
-        size = np.sqrt(np.where(normal.diagonal() > 0, normal.diagonal(), 1.0))
-        normal = normal / (size * size[:, None]) + damping * np.eye(len(x))
-        step = np.linalg.solve(normal, -pull / size) / size
-        step *= min(1.0, _LONGEST / max(float(np.abs(step).max()), 1e-300))
-        after = np.minimum(np.maximum(x + step, bounds[0]), bounds[1])
-        there, steeper = misfit(after)
-        gained = float(left @ left - there @ there)
-        # Of deviations that are known to a few eps.
-        rounding = 8 * _EPS * float(np.abs(left).sum() + len(left) * _EPS)
-        if gained >= 0:
-            x, left, slopes, damping = after, there, steeper, max(0.01 * damping, _LEAST)
-        else:
-            damping *= 10
-        if abs(gained) <= rounding or damping > _STIFFEST:
-            break
-    return x
 
 
 def _project(
@@ -269,7 +240,7 @@ def _standard_errors(
     """
     scatter = float(misfit @ misfit) / degrees_of_freedom
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
-    if sizes[-1] <= _EPS * sizes[0]:
+    if sizes[-1] <= np.finfo(np.float64).eps * sizes[0]:
         return np.full(len(directions), np.inf)
     errors: FloatArray = np.sqrt(scatter * ((directions / sizes[:, None]) ** 2).sum(axis=0))
     return errors

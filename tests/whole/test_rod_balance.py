@@ -82,8 +82,7 @@ def test_rod_balances_the_films_pull_at_second_order(
     """On the branches that leave the two-lobed film, and the disk at 96 pi^3.
 
     And no net normal curvature, to one part in as many as the loop has edges: what is left
-    of it comes from where a mesh happens to put its vertices, so that it falls with their
-    number, but not from one mesh to the next.
+    of it comes from where a mesh happens to put its vertices, and has no clear order.
     """
     forces, pulls = [], []
     for rings in RINGS[leave]:

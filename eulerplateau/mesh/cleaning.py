@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.errors import MeshError
@@ -103,6 +102,8 @@ def _places(points: FloatArray, tolerance: float) -> IntArray:
     if tolerance == 0.0:
         _, place = np.unique(points, axis=0, return_inverse=True)
         return np.asarray(place.ravel(), dtype=np.int64)
+    from scipy.spatial import cKDTree  # slow to load, and few meshes need it
+
     # A power of two takes squares out of reach of overflow, and rounds nothing.
     exponent = -int(np.frexp(np.abs(points).max())[1])
     tree = cKDTree(np.ldexp(points, exponent))

@@ -13,9 +13,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
 
-from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import area_vectors, unit
 
@@ -141,7 +140,7 @@ def _loop_normals(mesh: Disk, x: FloatArray, tangent: FloatArray) -> FloatArray:
     mean = unit(mean - (mean * tangent).sum(axis=1, keepdims=True) * tangent)
     across = np.cross(mean, tangent)
 
-    first, neighbours = _second_ring(mesh)
+    first, neighbours = mesh.second_ring
     count = np.diff(first, append=len(neighbours))
     offset = x[neighbours] - np.repeat(x[mesh.loop], count, axis=0)
     reach = np.add.reduceat(np.linalg.norm(offset, axis=1), first) / count
@@ -157,22 +156,3 @@ def _loop_normals(mesh: Disk, x: FloatArray, tangent: FloatArray) -> FloatArray:
     right = np.add.reduceat(weighted * height[:, None], first)
     quadric = np.linalg.solve(matrix + _RIDGE * np.eye(5), right[:, :, None])[:, :, 0]
     return unit(mean - quadric[:, 1:2] * across)
-
-
-def _second_ring(mesh: Disk) -> tuple[IntArray, IntArray]:
-    """Return the vertices at most two edges from each loop vertex, itself left out.
-
-    Returns
-    -------
-    first : (n_b,) int
-        Where in `neighbours` those of loop vertex v begin.
-    neighbours : (n,) int
-    """
-    start, end = mesh.edges.T
-    ends = (np.concatenate([start, end]), np.concatenate([end, start]))
-    ring = coo_array((np.ones(len(ends[0])), ends), shape=(mesh.n_v, mesh.n_v)).tocsr()
-    near_loop = ring[mesh.loop]
-    row, column = (near_loop @ ring + near_loop).nonzero()
-    other = column != mesh.loop[row]
-    row, column = row[other], column[other]
-    return np.searchsorted(row, np.arange(mesh.n_b)), column.astype(np.int64)

@@ -141,6 +141,22 @@ class Disk:
         return np.setdiff1d(np.arange(self.n_v), self.loop)
 
     @cached_property
+    def second_ring(self) -> tuple[IntArray, IntArray]:
+        """The vertices at most two edges from each loop vertex, itself left out.
+
+        Where in the second array (n,) those of loop vertex v begin (n_b,), and vertices.
+        """
+        start, end = self.edges.T
+        ends = (np.concatenate([start, end]), np.concatenate([end, start]))
+        shape = (self.n_v, self.n_v)
+        ring = coo_array((np.ones(len(ends[0])), ends), shape=shape).tocsr()
+        near_loop = ring[self.loop]
+        row, column = (near_loop @ ring + near_loop).nonzero()
+        other = column != self.loop[row]
+        row, column = row[other], column[other]
+        return np.searchsorted(row, np.arange(self.n_b)), column.astype(np.int64)
+
+    @cached_property
     def digest(self) -> str:
         """SHA-256 of positions and triangles: the mesh's identity in run.json."""
         content = self.x.tobytes() + self.triangles.tobytes()

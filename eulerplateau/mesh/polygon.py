@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ellipe, ellipeinc
 
 from eulerplateau.arrays import BoolArray, FloatArray
 
@@ -31,6 +30,9 @@ def lengthened_hexagon(half_length: float) -> FloatArray:
 
 def ellipse(aspect: float, sides: int) -> FloatArray:
     """Return `sides` points at equal arc length on the ellipse of semi-axes `aspect`, 1."""
+    # Slow to load, and only ellipses need it.
+    from scipy.special import ellipe, ellipeinc
+
     m = 1 - 1 / aspect**2
     quarter = ellipe(m)
     # Arc length is aspect E(t | m) with t = theta - pi/2. Bisection, because Newton
@@ -48,6 +50,8 @@ def ellipse(aspect: float, sides: int) -> FloatArray:
 
 def ellipse_perimeter(aspect: float) -> float:
     """Return the arc length of the ellipse of semi-axes `aspect` and 1."""
+    from scipy.special import ellipe
+
     return 4 * aspect * float(ellipe(1 - 1 / aspect**2))
 
 

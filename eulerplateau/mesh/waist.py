@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.distance import pdist
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.mesh.disk import Disk
@@ -125,10 +124,11 @@ def _line(
 
 def _farthest_pairs(mesh: Disk) -> list[tuple[int, int]]:
     """Return the pairs of loop vertices farthest apart, all among equals."""
-    distances = pdist(mesh.x[mesh.loop])
+    one, other = (mesh.loop[places] for places in np.triu_indices(mesh.n_b, 1))
+    # One axis after the other: there may be millions of pairs.
+    distances = np.sqrt(sum((along[one] - along[other]) ** 2 for along in mesh.x.T))
     equals = distances >= distances.max() - _ON_LINE
-    rows, columns = (mesh.loop[ends[equals]] for ends in np.triu_indices(mesh.n_b, 1))
-    return list(zip(rows.tolist(), columns.tolist(), strict=True))
+    return list(zip(one[equals].tolist(), other[equals].tolist(), strict=True))
 
 
 def _crossed(triangles: IntArray, right: BoolArray) -> IntArray:

@@ -6,16 +6,13 @@ import io
 from collections.abc import Callable, Mapping
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
-from typing import Any, TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TypeVar
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError
+from eulerplateau.mesh.vtp_content import Fields, vtp_content
 from eulerplateau.mesh.whole_files import whole_file, write_whole
 
-Fields = Mapping[str, NDArray[Any]]
 Writer = Callable[[Path, FloatArray, IntArray], None]
 F = TypeVar("F")
 
@@ -114,59 +111,3 @@ def write_vtp(
     field_data : by name, (n,) or (n, k)
     """
     write_whole(path, vtp_content(x, triangles, loop, point_fields, field_data))
-
-
-def vtp_content(
-    x: FloatArray,
-    triangles: IntArray,
-    loop: IntArray | None = None,
-    point_fields: Fields | None = None,
-    field_data: Fields | None = None,
-) -> bytes:
-    """Return what `write_vtp` writes."""
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkPolyData
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
-
-    positions = vtkPoints()
-    positions.SetData(_array("Points", x))
-    surface = vtkPolyData()
-    surface.SetPoints(positions)
-    if loop is not None:
-        surface.SetLines(_cells(np.append(loop, loop[0])[None, :]))
-    surface.SetPolys(_cells(triangles))
-    for name, values in (point_fields or {}).items():
-        surface.GetPointData().AddArray(_array(name, values))
-    for name, values in (field_data or {}).items():
-        surface.GetFieldData().AddArray(_array(name, values))
-    # Into a string, since VTK's own files end up empty on a full disk, in silence.
-    writer = vtkXMLPolyDataWriter()
-    writer.SetInputData(surface)
-    writer.WriteToOutputStringOn()
-    writer.SetDataModeToBinary()
-    writer.Write()
-    content: str = writer.GetOutputString()
-    return content.encode("ascii")
-
-
-def _array(name: str, values: NDArray[Any]) -> Any:
-    from vtkmodules.util import numpy_support
-
-    to_vtk: Any = numpy_support.numpy_to_vtk
-    array = to_vtk(np.ascontiguousarray(values), deep=True)
-    array.SetName(name)
-    return array
-
-
-def _cells(vertices: IntArray) -> Any:
-    """Return cells of equal size, one row of vertex numbers each."""
-    from vtkmodules.util import numpy_support
-    from vtkmodules.vtkCommonDataModel import vtkCellArray
-
-    to_vtk: Any = numpy_support.numpy_to_vtkIdTypeArray
-    count, size = vertices.shape
-    offsets = to_vtk(np.arange(count + 1) * size, deep=True)
-    flat = np.ascontiguousarray(vertices.ravel(), dtype=np.int64)
-    cells = vtkCellArray()
-    cells.SetData(offsets, to_vtk(flat, deep=True))
-    return cells

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.runs.rows import BranchRecord, Record
@@ -184,6 +183,9 @@ class Branch(Series):
 
         Near a pitchfork the amplitude is linear in the arclength and the load quadratic.
         """
+        # Slow to load, and only pictures need it.
+        from scipy.interpolate import CubicSpline
+
         s = np.array([row.arclength for row in self.rows[part]])
         if self.rows[part][0] is self.rows[0] and self.start is not None:
             s[0] = 0.0
@@ -234,6 +236,8 @@ def energy_above(*first: Series) -> Callable[[Series], FloatArray]:
     dE/dload is the energy that is proportional to the load over the load, so that cubics
     interpolate the first branch's energy to fourth order in the step.
     """
+    from scipy.interpolate import CubicHermiteSpline
+
     known = {row.load: row for series in first for row in _one_way(series.rows)}
     if len(known) < 2:
         return lambda branch: np.full(len(branch.rows), np.nan)

@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -217,8 +216,7 @@ def write_series(
     timed = sorted((value if by_load else step, name) for step, value, name in shapes)
     time_is = f"load {load.text}" if by_load else "step"
     lines = [
-        f'    <DataSet timestep="{time!r}" part="0" file={quoteattr(name)}/>'
-        for time, name in timed
+        f'    <DataSet timestep="{time!r}" part="0" file="{name}"/>' for time, name in timed
     ]
     content = "\n".join(
         [

@@ -5,6 +5,7 @@
                   when it counts as converged, and what each status advises
     newton.py     by Newton on the loop; chooses among quadratic.py, soap.py, in_plane/
     descent.py    downhill to a minimum, on trust_region.py; primal_dual.py: the fast end
+    roots.py      of functions of one number
     second_variation.py  Hessian and spectrum at one loop, by tangent_coordinates.py;
                   models.py, quadratic_models.py: of which part, large_loops/ for large ones
     conjugate_gradient.py  the paper's method, by augmented_lagrangian.py, in the unknowns

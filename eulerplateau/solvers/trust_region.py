@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.solvers.roots import root_between
 
 
 def trust_region_step(
@@ -36,7 +36,7 @@ def trust_region_step(
         step[0] = -rest if g[0] > 0 else rest
         return step
     # Nearly linear in the gap, unlike the length itself.
-    gap = brentq(
+    gap = root_between(
         lambda gap: 1 / radius - 1 / length(gap),
         least,
         float(np.linalg.norm(g)) / radius + least,

@@ -44,6 +44,46 @@ def test_surface_line_and_fields_come_back_bit_for_bit(tmp_path: Path, mesh: Dis
             assert np.array_equal(read[name], values, equal_nan=True)
 
 
+def test_vtk_reads_every_bit_of_what_is_written(tmp_path: Path, mesh: Disk) -> None:
+    """The loop as cell 0, as ParaView shows it; no array is left out."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+    draw = np.random.default_rng(2)
+    points = {
+        "scalar": np.where(draw.random(mesh.n_v) < 0.5, np.nan, 1e-300),
+        "vector": draw.standard_normal(mesh.x.shape),
+        "flag": np.arange(mesh.n_v, dtype=np.uint8),
+    }
+    about = {"load": np.array([0.1 + 0.2]), "step": np.array([7]), "none": np.empty((0, 2))}
+    path = tmp_path / "film.vtp"
+    write_vtp(
+        path, mesh.x, mesh.triangles, loop=mesh.loop, point_fields=points, field_data=about
+    )
+    reader: Any = vtkXMLPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    assert reader.GetErrorCode() == 0
+    found = reader.GetOutput()
+    assert np.array_equal(vtk_to_numpy(found.GetPoints().GetData()), mesh.x)
+    lines, polygons = found.GetLines(), found.GetPolys()
+    closed = [*mesh.loop, mesh.loop[0]]
+    assert vtk_to_numpy(lines.GetConnectivityArray()).tolist() == closed
+    assert vtk_to_numpy(lines.GetOffsetsArray()).tolist() == [0, len(closed)]
+    corners = vtk_to_numpy(polygons.GetConnectivityArray())
+    assert np.array_equal(corners.reshape(-1, 3), mesh.triangles)
+    assert (np.diff(vtk_to_numpy(polygons.GetOffsetsArray())) == 3).all()
+    for written, read in (
+        (points, found.GetPointData()),
+        (about, found.GetFieldData()),
+    ):
+        assert read.GetNumberOfArrays() == len(written)
+        for name, values in written.items():
+            stored = vtk_to_numpy(read.GetArray(name))
+            assert stored.dtype == values.dtype
+            assert np.array_equal(stored, values, equal_nan=values.dtype.kind == "f")
+
+
 def test_surface_alone_has_neither_line_nor_field(tmp_path: Path, mesh: Disk) -> None:
     write_vtp(tmp_path / "film.vtp", mesh.x, mesh.triangles)
     found = read_vtp(tmp_path / "film.vtp")

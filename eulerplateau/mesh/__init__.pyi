@@ -1,4 +1,4 @@
-from .curvature import angle_defects as angle_defects, loop_frame as loop_frame
+from .curvature import Curvatures as Curvatures
 from .disk import Disk as Disk
 from .files import (
     read_disk as read_disk,

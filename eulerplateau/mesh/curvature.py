@@ -62,6 +62,19 @@ class LoopFrame:
     mean_lengths: FloatArray
 
 
+@dataclass(frozen=True)
+class Curvatures:
+    """The loop's frame and the angle defects (n_v,) of a shape, which several ask for."""
+
+    frame: LoopFrame
+    defects: FloatArray
+
+    @classmethod
+    def of(cls, mesh: Disk, x: FloatArray) -> Curvatures:
+        """Return those of the shape `x` (n_v, 3) of a mesh, in units of L."""
+        return cls(loop_frame(mesh, x), angle_defects(mesh, x))
+
+
 def loop_frame(mesh: Disk, x: FloatArray) -> LoopFrame:
     """Return the frame and curvatures of the loop of the shape `x` (n_v, 3), in units of L.
 

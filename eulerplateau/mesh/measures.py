@@ -9,10 +9,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import largest_turning
 from eulerplateau.mesh.crossings import self_intersections
-from eulerplateau.mesh.curvature import (
-    loop_frame,
-    total_gauss_curvature,
-)
+from eulerplateau.mesh.curvature import Curvatures
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.mesh.triangles import (
@@ -20,6 +17,9 @@ from eulerplateau.mesh.triangles import (
     smallest_angle,
 )
 from eulerplateau.mesh.waist import waist_path, waist_twist
+
+# In which order moments are summed: to look for it takes longer than to sum.
+_PATH = ["einsum_path", (1, 2), (0, 1)]
 
 
 @dataclass(frozen=True)
@@ -79,21 +79,27 @@ class Measurer:
 
         Raises MeshError of kind "vertex" if a coordinate is not finite.
         """
+        return self.measured(shape)[0]
+
+    def measured(self, shape: Shape) -> tuple[Measures, Curvatures]:
+        """Return also the curvatures it has; raises what `measure` raises."""
         disk, x = self.disk_of(shape), shape.x
         crossings = self_intersections(x, disk.triangles)
-        frame = loop_frame(disk, x)
+        curvatures = Curvatures.of(disk, x)
+        frame = curvatures.frame
         corner = x[disk.triangles]
         areas = np.linalg.norm(area_vectors(disk.triangles, x), axis=1)
-        return Measures(
+        found = Measures(
             abs_kappa_n=float(np.abs(frame.kappa_n) @ frame.mean_lengths),
-            total_gauss_curvature=total_gauss_curvature(disk, x),
+            total_gauss_curvature=float(curvatures.defects[disk.interior].sum()),
             area=float(areas.sum()),
             max_turning=largest_turning(shape.x_loop),
             waist_twist=waist_twist(self._path, x),
             self_intersections=crossings,
-            aspect=aspect(disk, x),
+            aspect=_aspect(corner, areas),
             min_angle=smallest_angle(corner - np.roll(corner, 1, axis=1), areas),
         )
+        return found, curvatures
 
 
 def measure(disk: Disk, shape: Shape) -> Measures:
@@ -113,14 +119,18 @@ def aspect(mesh: Disk, x: FloatArray) -> float:
     polygon, whose extents would depend on the choice among equivalent axes; NaN for a
     film without area.
     """
-    corner = x[mesh.triangles]
     areas = np.linalg.norm(area_vectors(mesh.triangles, x), axis=1)
+    return _aspect(x[mesh.triangles], areas)
+
+
+def _aspect(corner: FloatArray, areas: FloatArray) -> float:
+    """Return `aspect` by the corners (n_t, 3, 3) of the triangles, and their areas."""
     if areas.sum() == 0.0:
         return float("nan")
     centre = areas @ corner.mean(axis=1) / areas.sum()
     corner = corner - centre
     # A quadratic form integrates over a triangle exactly by the midpoints of its edges.
     middle = 0.5 * (corner + np.roll(corner, -1, axis=1))
-    moments = np.einsum("t,tki,tkj->ij", areas, middle, middle, optimize=True)
+    moments = np.einsum("t,tki,tkj->ij", areas, middle, middle, optimize=_PATH)
     _, middling, largest = np.linalg.eigvalsh(moments)
     return float(np.sqrt(max(middling, 0.0) / largest))

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh import Disk, sync, write_whole
+from eulerplateau.mesh import Curvatures, Disk, sync, write_whole
 from eulerplateau.runs.checkpoint import (
     CHECKPOINTS,
     Arrays,
@@ -135,13 +135,16 @@ class RunFolder:
         modes: Mapping[str, FloatArray] | None = None,
         rest_mesh: str | None = None,
         state: Mapping[str, NDArray[Any]] | None = None,
+        curvatures: Curvatures | None = None,
     ) -> None:
         """Add a film's shape `x` (n_v, 3), with its critical `modes`, and then its row.
 
         `rest_mesh` is the SHA-256 of the mesh at rest, by default that of `mesh`, `state`
-        what the solver needs to go on from here. Raises what `add` raises.
+        what the solver needs to go on from here, `curvatures` those of the shape, if they
+        are known. Raises what `add` raises.
         """
-        self.add(row, lambda path: write_shape(path, mesh, x, row, modes, rest_mesh, state))
+        known = modes, rest_mesh, state, curvatures
+        self.add(row, lambda path: write_shape(path, mesh, x, row, *known))
 
     def add(self, row: Record, write: Callable[[Path], None]) -> None:
         """Add a shape, which `write` writes to the file it is given, and then its row.

@@ -190,13 +190,14 @@ class Recorder(Generic[R]):
         self, found: Equilibrium, modes: Mapping[str, FloatArray], **columns: Any
     ) -> R:
         """Write an equilibrium, modes as its fields; `columns` are the row type's own."""
-        measured = asdict(self.measurer.measure(found.shape))
+        measures, curvatures = self.measurer.measured(found.shape)
         own, fields = self.problem.said_of_loop(found.shape)
         step, load = len(self.run.rows), self.problem.film.load
-        row = make_row(step, found, load, self.row_type, measured | columns | own)
+        row = make_row(step, found, load, self.row_type, asdict(measures) | columns | own)
         disk, rest = self.measurer.disk_of(found.shape), self.problem.disk.digest
         state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
-        self.run.folder.record(row, disk, found.shape.x, {**modes, **fields}, rest, state)
+        known = {**modes, **fields}, rest, state, curvatures
+        self.run.folder.record(row, disk, found.shape.x, *known)
         self.run.rows.append(row)
         return row
 

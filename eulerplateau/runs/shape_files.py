@@ -20,11 +20,10 @@ from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, OutputError
 from eulerplateau.film import Load
 from eulerplateau.mesh import (
+    Curvatures,
     Disk,
     Shape,
     VtpFile,
-    angle_defects,
-    loop_frame,
     read_vtp,
     write_vtp,
     write_whole,
@@ -90,6 +89,7 @@ def write_shape(
     modes: Mapping[str, FloatArray] | None = None,
     rest_mesh: str | None = None,
     state: Mapping[str, NDArray[Any]] | None = None,
+    curvatures: Curvatures | None = None,
 ) -> None:
     """Write the film at positions `x` (n_v, 3) to `path` (.vtp), exactly and whole.
 
@@ -97,7 +97,8 @@ def write_shape(
     the film); inside: angle_defect; everywhere: on_loop (1 or 0) and the vectors `modes`,
     (n_v, 3) each, under their names. Field data, of its `row`: step, kL3_alpha, sigma_hat,
     energy, and the SHA-256 of the mesh at rest, `rest_mesh`, by default that of `mesh`;
-    and of the solver's `state` what it needs to go on from here.
+    and of the solver's `state` what it needs to go on from here. `curvatures` are those of
+    the shape, found here if they are not known.
     Raises OutputError if the file cannot be written.
     """
     about = {name: np.array([getattr(row, name)]) for name in _OF_ITS_ROW}
@@ -107,7 +108,8 @@ def write_shape(
         x,
         mesh.triangles,
         loop=mesh.loop,
-        point_fields=_point_fields(mesh, x) | dict(modes or {}),
+        point_fields=_point_fields(mesh, curvatures or Curvatures.of(mesh, x))
+        | dict(modes or {}),
         field_data={
             **about,
             _REST_MESH: np.frombuffer(digest, dtype=np.uint8),
@@ -233,14 +235,13 @@ def write_series(
     write_whole(path, content.encode("utf-8"))
 
 
-def _point_fields(mesh: Disk, x: FloatArray) -> dict[str, NDArray[Any]]:
-    frame = loop_frame(mesh, x)
+def _point_fields(mesh: Disk, curvatures: Curvatures) -> dict[str, NDArray[Any]]:
     fields: dict[str, NDArray[Any]] = {}
     for name in _LOOP_FIELDS:
-        on_loop = getattr(frame, name)
+        on_loop = getattr(curvatures.frame, name)
         fields[name] = np.full((mesh.n_v, *on_loop.shape[1:]), np.nan)
         fields[name][mesh.loop] = on_loop
-    fields["angle_defect"] = angle_defects(mesh, x).astype(np.float64)
+    fields["angle_defect"] = curvatures.defects.copy()
     fields["angle_defect"][mesh.loop] = np.nan
     fields["on_loop"] = np.zeros(mesh.n_v, dtype=np.uint8)
     fields["on_loop"][mesh.loop] = 1

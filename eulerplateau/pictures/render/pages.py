@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -36,20 +37,33 @@ def caption(row: Any) -> str:
 
 def captioned(pixels: Pixels, text: str, scale: Scale | None) -> Pixels:
     """Return the image with its caption, and the colour bar of `scale` if there is one."""
+    writing = _writing(text, scale, pixels.shape[1])
+    found = pixels.copy()
+    lower = found[-len(writing) :]
+    opacity = writing[..., 3:] / 255.0
+    lower[:] = np.rint(lower + opacity * (writing[..., :3].astype(float) - lower))
+    return found
+
+
+@lru_cache(maxsize=1)
+def _writing(text: str, scale: Scale | None, width: int) -> Pixels:
+    """Return what stands below an image (height, width, RGBA), as high as there is any.
+
+    The frames of a turning shape have the same: to write it takes longer than to render.
+    """
     load_matplotlib()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    width = pixels.shape[1]
-    figure = Figure(figsize=(_INCHES, _INCHES * ASPECT), dpi=width / _INCHES)
+    figure = Figure(figsize=(_INCHES, _INCHES * ASPECT), dpi=width / _INCHES, frameon=False)
     canvas: Any = FigureCanvasAgg(figure)
-    figure.figimage(pixels, zorder=-1)
     figure.text(0.03, 0.035, text, fontsize=13)
     if scale is not None:
         _add_bar(figure, scale)
     canvas.draw()
-    drawn: Pixels = np.asarray(canvas.buffer_rgba())[..., :3].copy()
-    return drawn
+    drawn: Pixels = np.asarray(canvas.buffer_rgba())
+    first = int(np.flatnonzero(drawn[..., 3].any(axis=1))[0])
+    return drawn[first:].copy()
 
 
 def _add_bar(figure: Any, scale: Scale) -> None:

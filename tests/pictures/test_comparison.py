@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from shutil import copytree
@@ -28,6 +28,7 @@ from eulerplateau.errors import OutputError
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures import onset
 from eulerplateau.pictures.comparison import WHAT, plot_runs, runs_figure
+from eulerplateau.pictures.figure import save
 from eulerplateau.pictures.onset import fit_onset
 from eulerplateau.runs.record import read_runs
 from eulerplateau.solvers.equilibrium import Status
@@ -93,13 +94,33 @@ def legend_texts(figure: Figure) -> list[str]:
     ]
 
 
+@pytest.fixture(scope="module")
+def figure_of(long_names: list[Path]) -> Callable[[str], Figure]:
+    """What makes the figure of one run, once, with its parts where they belong."""
+
+    @functools.cache
+    def laid_out(what: str) -> Figure:
+        figure = runs_figure(read_runs(long_names[:1]), what)
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+        return figure
+
+    return laid_out
+
+
+def test_a_plot_is_its_figure(tmp_path: Path, sweep: Path) -> None:
+    plot_runs(read_runs([sweep]), "curvature", tmp_path / "plot.png")
+    save(runs_figure(read_runs([sweep]), "curvature"), tmp_path / "figure.png")
+    assert (tmp_path / "plot.png").read_bytes() == (tmp_path / "figure.png").read_bytes()
+
+
 @pytest.mark.parametrize("what", WHAT)
 @pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
 def test_every_plot_is_drawn_in_every_format(
-    tmp_path: Path, sweep: Path, what: str, ending: str
+    tmp_path: Path, figure_of: Callable[[str], Figure], what: str, ending: str
 ) -> None:
     path = tmp_path / f"plot.{ending}"
-    plot_runs(read_runs([sweep]), what, path)
+    save(figure_of(what), path)
     if ending == "png":
         assert imread(path)[..., :3].std() > 0.05
     elif ending == "svg":
@@ -121,9 +142,11 @@ def test_same_runs_make_the_same_file(tmp_path: Path, sweep: Path) -> None:
 
 
 @pytest.mark.parametrize("what", WHAT)
-def test_curves_hold_the_rows_and_the_axes_say_what(sweep: Path, what: str) -> None:
+def test_curves_hold_the_rows_and_the_axes_say_what(
+    sweep: Path, figure_of: Callable[[str], Figure], what: str
+) -> None:
     (run,) = read_runs([sweep])
-    axes = panels(runs_figure([run], what))
+    axes = panels(figure_of(what))
     assert LABEL[what] in axes[0].get_ylabel()
     assert all(ax.get_ylabel() for ax in axes)
     if what != "onset":
@@ -169,9 +192,14 @@ def long_names(sweep: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Pa
 
 @pytest.mark.parametrize("what", WHAT)
 @pytest.mark.parametrize("count", [1, 4])
-def test_nothing_leaves_the_figure(long_names: list[Path], what: str, count: int) -> None:
-    figure = runs_figure(read_runs(long_names[:count]), what)
-    figure.draw_without_rendering()
+def test_nothing_leaves_the_figure(
+    long_names: list[Path], figure_of: Callable[[str], Figure], what: str, count: int
+) -> None:
+    if count == 1:
+        figure = figure_of(what)
+    else:
+        figure = runs_figure(read_runs(long_names[:count]), what)
+        figure.draw_without_rendering()
     inside = figure.bbox.padded(1.0)
     boxes = [ax.get_tightbbox() for ax in figure.findobj(Axes) if isinstance(ax, Axes)]
     boxes += [legend.get_window_extent() for legend in figure.findobj(Legend)]

@@ -64,10 +64,10 @@ def named(block: str) -> str:
 
 
 @pytest.fixture
-def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, coarse_pictures: None) -> Path:
     """Return a folder like the repository's, which the test then is in.
 
-    Its runs are short, and the tutorial's files are in it.
+    Its runs are short, its diagrams coarse, and the tutorial's files are in it.
     """
     shutil.copytree(ROOT / "meshes", tmp_path / "meshes")
     (tmp_path / "runs").mkdir()

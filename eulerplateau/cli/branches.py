@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eulerplateau.cli.batch import GOES_ON, OVERWRITE, QUIET, before, begin
+from eulerplateau.cli.compiling import telling_of_compiling
 from eulerplateau.cli.overrides import load_single, setting, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -85,7 +86,8 @@ def _explore(run: RunSpec, folder: Path, quiet: bool, overwrite: bool) -> Explor
             )
             bar.update()
 
-        return run_branches(run, folder, show, overwrite=overwrite)
+        with telling_of_compiling(bar.set_postfix_str):
+            return run_branches(run, folder, show, overwrite=overwrite)
 
 
 def _report(result: Exploration, drawn: list[str]) -> None:

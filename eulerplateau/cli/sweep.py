@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eulerplateau.cli.batch import OVERWRITE, RESUME, before, begin, carried_out
+from eulerplateau.cli.compiling import telling_of_compiling
 from eulerplateau.cli.overrides import parse_setting
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -93,7 +94,8 @@ def _run(
             )
             bar.update()
 
-        return run_sweep(spec, folder, show, resume=resume, overwrite=overwrite)
+        with telling_of_compiling(bar.set_postfix_str):
+            return run_sweep(spec, folder, show, resume=resume, overwrite=overwrite)
 
 
 def _draw(result: RunResult, pictures: bool, render: bool) -> list[str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from eulerplateau.mesh import write_mesh
 from eulerplateau.mesh.disk import Disk
 
-HEAVY = {"gmsh", "pyvista", "trimesh", "matplotlib", "meshio"}
+HEAVY = {"gmsh", "pyvista", "trimesh", "matplotlib", "meshio", "vtkmodules"}
 
 
 def loaded_by(*words: object) -> set[str]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from scipy.optimize import brentq
 
 from eulerplateau.branches.point import NOISE, BranchPoint, StepControl, along, correct
-from eulerplateau.solvers import root_between
 
 _PRECISION = 1e-14
 _ROUNDING = 4 * float(np.finfo(np.float64).eps)
@@ -53,7 +53,7 @@ class Interval:
         try:
             if value(0.0) * value(reach) > 0:
                 return None
-            root = root_between(value, 0.0, reach, xtol=_PRECISION, rtol=8.9e-16)
+            root = brentq(value, 0.0, reach, xtol=_PRECISION, rtol=8.9e-16)
             value(root)
         except ArithmeticError:
             return None

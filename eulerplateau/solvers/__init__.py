@@ -5,12 +5,10 @@
                   when it counts as converged, and what each status advises
     newton.py     by Newton on the loop; chooses among quadratic.py, soap.py, in_plane/
     descent.py    downhill to a minimum, on trust_region.py; primal_dual.py: the fast end
-    roots.py      of functions of one number
     second_variation.py  Hessian and spectrum at one loop, by tangent_coordinates.py;
                   models.py, quadratic_models.py: of which part, large_loops/ for large ones
     conjugate_gradient.py  the paper's method, by augmented_lagrangian.py, in the unknowns
                   of trial_space.py and variables.py; plain_gradient.py: as the paper has it
-    threads.py    one BLAS thread while something is solved
 
 A solver sees an energy of loops with its constraint, no mesh and no file. Which film it
 is is asked in newton.py and in trial_space.py, nowhere else.

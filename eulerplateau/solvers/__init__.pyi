@@ -10,7 +10,6 @@ from .equilibrium import (
 from .models import DenseModels as DenseModels
 from .newton import lowest_modes as lowest_modes
 from .problem import Problem as Problem
-from .roots import root_between as root_between
 from .second_variation import (
     TangentModel as TangentModel,
     stability as stability,

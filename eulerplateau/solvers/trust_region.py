@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.solvers.roots import root_between
 
 
 def trust_region_step(
@@ -35,8 +34,11 @@ def trust_region_step(
         rest = np.sqrt(max(radius**2 - float(step @ step), 0.0))
         step[0] = -rest if g[0] > 0 else rest
         return step
+    # Slow to load, and asked for only where a step is cut short.
+    from scipy.optimize import brentq
+
     # Nearly linear in the gap, unlike the length itself.
-    gap = root_between(
+    gap = brentq(
         lambda gap: 1 / radius - 1 / length(gap),
         least,
         float(np.linalg.norm(g)) / radius + least,

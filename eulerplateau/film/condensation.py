@@ -17,7 +17,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpotrs, dtrtrs
 from scipy.sparse import csc_array
 
 from eulerplateau.arrays import FloatArray, IntArray
@@ -49,21 +48,26 @@ class Condensation:
         return self.extend(moved)
 
     def solve(self, forces: FloatArray) -> FloatArray:
-        """Return L_ii^-1 f (n_i,) for forces f on the interior rows, here 0 ... n_i - 1."""
+        """Return L_ii^-1 f for forces f (n_i,) or (n_i, m) on the interior rows.
+
+        Those are the rows 0 ... n_i - 1.
+        """
         n_i = len(forces)
         order = self._order[:n_i]
-        ordered = np.zeros(len(self._order))
-        ordered[:n_i] = forces[order]
+        ordered = np.zeros((len(self._order), forces.size // n_i))
+        ordered[:n_i] = forces.reshape(n_i, -1)[order]
         for part in self._parts:
-            own = ordered[part.start : part.stop]
-            ordered[part.around] += part.extension.T @ own
-            ordered[part.start : part.stop] = dpotrs(part.factor, own, lower=True)[0]
+            inside, left = part.pulled(ordered[part.start : part.stop])
+            ordered[part.start : part.stop] = inside
+            ordered[part.around] += left
         ordered[n_i:] = 0.0
         for part in reversed(self._parts):
-            ordered[part.start : part.stop] += part.extension @ ordered[part.around]
-        x = np.empty(n_i)
+            ordered[part.start : part.stop] = part.unfolded(
+                ordered[part.around], ordered[part.start : part.stop]
+            )
+        x = np.empty_like(ordered[:n_i])
         x[order] = ordered[:n_i]
-        return x
+        return x.reshape(forces.shape)
 
     def carry(self, forces: FloatArray) -> FloatArray:
         """Return f_b - L_bi L_ii^-1 f_i (n_b, m): what forces (n, m) come to on the loop.
@@ -72,7 +76,7 @@ class Condensation:
         """
         ordered = forces[self._order]
         for part in self._parts:
-            ordered[part.around] += part.extension.T @ ordered[part.start : part.stop]
+            ordered[part.around] += part.pulled(ordered[part.start : part.stop])[1]
         return ordered[len(ordered) - len(self.stiffness) :]
 
     def extend(self, x_loop: FloatArray) -> FloatArray:
@@ -80,7 +84,7 @@ class Condensation:
         ordered = np.empty((len(self._order), x_loop.shape[1]))
         ordered[len(ordered) - len(x_loop) :] = x_loop
         for part in reversed(self._parts):
-            ordered[part.start : part.stop] = part.extension @ ordered[part.around]
+            ordered[part.start : part.stop] = part.unfolded(ordered[part.around])
         x = np.empty_like(ordered)
         x[self._order] = ordered
         return x
@@ -94,8 +98,9 @@ class Condensation:
         ordered = np.empty((len(self._order), x_loop.shape[1]))
         ordered[len(inside) :] = x_loop
         for part in reversed(self._parts):
-            own = dtrtrs(part.factor, inside[part.start : part.stop], lower=1, trans=1)[0]
-            ordered[part.start : part.stop] = part.extension @ ordered[part.around] + own
+            ordered[part.start : part.stop] = part.unfolded(
+                ordered[part.around], inside[part.start : part.stop]
+            )
         x = np.empty_like(ordered)
         x[self._order] = ordered
         return x
@@ -108,9 +113,9 @@ class Condensation:
         ordered = forces[self._order]
         inside = np.empty((len(ordered) - len(self.stiffness), ordered.shape[1]))
         for part in self._parts:
-            own = ordered[part.start : part.stop]
-            ordered[part.around] += part.extension.T @ own
-            inside[part.start : part.stop] = dtrtrs(part.factor, own, lower=1)[0]
+            own, left = part.pulled(ordered[part.start : part.stop])
+            ordered[part.around] += left
+            inside[part.start : part.stop] = own
         return ordered[len(inside) :], inside
 
 

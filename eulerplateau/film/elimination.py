@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from scipy.linalg import LinAlgError
-from scipy.linalg.lapack import dpotrf, dtrtrs
+from scipy.linalg.blas import dsyrk, dtrsm
+from scipy.linalg.lapack import dpotrf
 
 from eulerplateau.arrays import FloatArray, IntArray
 
@@ -23,14 +24,33 @@ from eulerplateau.arrays import FloatArray, IntArray
 class Part:
     """Rows start ... stop - 1 of the order, which hang on those `around` them.
 
-    In equilibrium x[start:stop] = extension @ x[around]; `factor` is Cholesky's, lower.
+    With the factor C, Cholesky's and lower, of what is eliminated, in equilibrium
+    x[start:stop] = -C^-T half^T x[around].
+
+    Attributes
+    ----------
+    half : (n_around, n) float, F_21 C^-T
+    factor : (n, n) float
     """
 
     start: int
     stop: int
     around: IntArray
-    extension: FloatArray
+    half: FloatArray
     factor: FloatArray
+
+    def unfolded(self, x: FloatArray, inside: FloatArray | None = None) -> FloatArray:
+        """Return x[start:stop] (n, m) of x[around], in equilibrium or C^-T inside off it."""
+        own = -self.half.T @ x
+        if inside is not None:
+            own += inside
+        found: FloatArray = dtrsm(1.0, self.factor, own, lower=1, trans_a=1)
+        return found
+
+    def pulled(self, own: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return C^-1 f and what that leaves of forces f (n, m) on the rows around."""
+        inside: FloatArray = dtrsm(1.0, self.factor, own, lower=1)
+        return inside, -self.half @ inside
 
 
 @dataclass(frozen=True)
@@ -56,12 +76,16 @@ class _Front:
         return self.stop - self.start + len(self.around)
 
     def assemble(self, values: FloatArray, remainders: dict[int, FloatArray]) -> FloatArray:
-        """Return the block (size, size): own rows of the matrix and what others left."""
+        """Return the block (size, size): own rows of the matrix and what others left.
+
+        In LAPACK's order, and filled on and below the diagonal only.
+        """
         n = self.size
-        block: FloatArray = summed(self.places, values[self.entries], n * n).reshape(n, n)
+        block = np.zeros((n, n))
+        add_entries(values, self.entries, self.places, block.reshape(-1))
         for number, place in self.left:
-            add_block(remainders.pop(number), place, block)
-        return block
+            add_block(remainders.pop(number).T, place, block)
+        return block.T
 
 
 @dataclass(frozen=True)
@@ -86,10 +110,12 @@ class Elimination:
         for number, front in enumerate(inner):
             own = front.stop - front.start
             block = front.assemble(values, remainders)
-            extension, remainder, factor = _condense_dense(block, own)
-            parts.append(Part(front.start, front.stop, front.around, extension, factor))
+            half, remainder, factor = _condense_dense(block, own)
+            parts.append(Part(front.start, front.stop, front.around, half, factor))
             remainders[number] = remainder
-        return kept.assemble(values, remainders), tuple(parts)
+        rest = kept.assemble(values, remainders)
+        mirror(rest)
+        return rest, tuple(parts)
 
 
 def plan(
@@ -146,24 +172,47 @@ def summed(place: IntArray, values: FloatArray, n: int) -> FloatArray:
 def _condense_dense(
     block: FloatArray, own: int
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Eliminate the first `own` rows of a symmetric matrix, of which those are filled.
+    """Eliminate the first `own` rows of a symmetric matrix, given below its diagonal.
 
-    Returns -F_11^-1 F_12, F_22 - F_21 F_11^-1 F_12, symmetric to the last bit, and the
-    factor of F_11.
+    Returns F_21 C^-T, F_22 - F_21 F_11^-1 F_12 below its diagonal, and C, the factor of
+    F_11.
     """
     factor, failed = dpotrf(block[:own, :own], lower=True)
     if failed:
         raise LinAlgError("what is eliminated is not positive definite")
     if own == len(block):
-        return np.zeros((own, 0)), np.zeros((0, 0)), factor
-    half, _ = dtrtrs(factor, block[:own, own:], lower=True)
-    extension, _ = dtrtrs(factor, half, lower=True, trans=1)
-    return -extension, block[own:, own:] - half.T @ half, factor
+        return np.zeros((0, own)), np.zeros((0, 0)), factor
+    half = dtrsm(1.0, factor, block[own:, :own], side=1, lower=1, trans_a=1)
+    rest = dsyrk(-1.0, half, beta=1.0, c=block[own:, own:], lower=1)
+    return half, rest, factor
+
+
+@njit(cache=True)
+def add_entries(
+    values: FloatArray, entries: IntArray, places: IntArray, total: FloatArray
+) -> None:
+    """Add values[entries] to `total` (n,) at `places`."""
+    for m in range(entries.shape[0]):
+        total[places[m]] += values[entries[m]]
 
 
 @njit(cache=True)
 def add_block(block: FloatArray, place: IntArray, total: FloatArray) -> None:
-    """Add a block (m, m) to the rows and columns `place` (m,) of `total` (n, n)."""
+    """Add the upper part of a block (m, m) to rows and columns `place` of `total` (n, n).
+
+    Places (m,) ascend.
+    """
     for i in range(place.shape[0]):
-        for j in range(place.shape[0]):
+        for j in range(i, place.shape[0]):
             total[place[i], place[j]] += block[i, j]
+
+
+@njit(cache=True)
+def mirror(matrix: FloatArray) -> None:
+    """Copy what is below the diagonal of a matrix (n, n) above it, tile by tile."""
+    n, tile = matrix.shape[0], 32
+    for top in range(0, n, tile):
+        for left in range(0, top + tile, tile):
+            for i in range(top, min(top + tile, n)):
+                for j in range(left, min(left + tile, i)):
+                    matrix[j, i] = matrix[i, j]

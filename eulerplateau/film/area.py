@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.condensation import Condensation
 from eulerplateau.film.folds import is_folded, laid_anew
 from eulerplateau.film.free_moves import FreeInterior
-from eulerplateau.film.harmonic import balance, follower
+from eulerplateau.film.harmonic import Follower, balance, follower
 from eulerplateau.film.interior import FreeFilm, HeightsFilm, LocalFilm
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
@@ -274,7 +273,7 @@ def _local(
     tiling: Tiling,
     x: FloatArray,
     sides: TriangleGeometry,
-    following: Condensation,
+    following: Follower,
     free: bool,
 ) -> LocalFilm:
     normals = tiling.vertex_normals(sides)[tiling.interior]

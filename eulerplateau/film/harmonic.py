@@ -6,19 +6,62 @@ that holds for its own positions (Pinkall and Polthier 1993).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.condensation import Condensation, factorise
+from eulerplateau.film.elimination import summed
 from eulerplateau.film.tiling import Tiling, TriangleGeometry
 
 
-def follower(tiling: Tiling, sides: TriangleGeometry) -> Condensation:
-    """Return what extends values on the loop to those harmonic inside, on a shape.
+@dataclass(frozen=True)
+class Follower:
+    """What extends values on the loop to those harmonic inside, on a shape.
 
-    Its `carry` takes forces to the loop. LinAlgError where the shape is too degenerate.
+    Attributes
+    ----------
+    entries : (m,) float, of the cotangent matrix, one for each of the tiling's pairs
+    inverse : its part inside, factorised
     """
-    return factorise(tiling.elimination, tiling.cotangent_laplacian(sides).data)
+
+    tiling: Tiling
+    entries: FloatArray
+    inverse: Condensation
+
+    def extend(self, moved: FloatArray) -> FloatArray:
+        """Return the values (n_v, m) that are `moved` (n_b, m) on the loop."""
+        tiling = self.tiling
+        pairs, inside, on_loop = tiling.coupled
+        values = np.empty((tiling.n_v, moved.shape[1]))
+        values[tiling.loop] = moved
+        pull = self.entries[pairs, None] * moved[on_loop]
+        pull = summed(inside, pull, len(tiling.interior))
+        values[tiling.interior] = -self.inverse.solve(pull)
+        return values
+
+    def carry(self, forces: FloatArray) -> FloatArray:
+        """Return what forces (n_v, m) come to on the loop (n_b, m): the adjoint."""
+        tiling = self.tiling
+        pairs, inside, on_loop = tiling.coupled
+        held = self.inverse.solve(forces[tiling.interior])
+        pull = self.entries[pairs, None] * held[inside]
+        carried: FloatArray = forces[tiling.loop] - summed(on_loop, pull, len(tiling.loop))
+        return carried
+
+    @cached_property
+    def condensed(self) -> Condensation:
+        """The cotangent matrix with the inside eliminated."""
+        return factorise(self.tiling.elimination, self.entries)
+
+
+def follower(tiling: Tiling, sides: TriangleGeometry) -> Follower:
+    """Return what follows the loop on a shape; LinAlgError where that is too degenerate."""
+    entries = tiling.cotangent_laplacian(sides).data
+    pairs, elimination = tiling.inside
+    return Follower(tiling, entries, factorise(elimination, entries[pairs]))
 
 
 def follow_loop(tiling: Tiling, x: FloatArray, x_loop: FloatArray) -> FloatArray:

@@ -36,6 +36,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.condensation import Condensation
 from eulerplateau.film.free_moves import FreeInterior, at_rest, is_rest
+from eulerplateau.film.harmonic import Follower
 from eulerplateau.film.normal_moves import InteriorUnknowns, NormalHeights
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 
@@ -135,7 +136,7 @@ class LocalFilm(ABC):
     x: FloatArray
     sides: TriangleGeometry
     normals: FloatArray
-    follower: Condensation
+    follower: Follower
     variations: InteriorUnknowns
     # The last films asked for: a solver comes back to them for force, energy and Hessian.
     _recent: list[FilmAtRest] = field(default_factory=list, init=False, repr=False)

@@ -89,7 +89,8 @@ class NormalHeights:
     def stiffness(self, sides: TriangleGeometry) -> Condensation:
         """Factorise n . H n (n_i, n_i); LinAlgError unless it is positive definite."""
         entries = self.tiling.normal_hessian(sides, self.normals).data
-        return factorise(self._inside, entries[self._chosen[0]])
+        pairs, elimination = self.tiling.inside
+        return factorise(elimination, entries[pairs])
 
     def condense(self, blocks: FloatArray) -> Condensation:
         """Eliminate the heights."""
@@ -128,13 +129,6 @@ class NormalHeights:
             np.flatnonzero(inside[i] & follows[k]),
             np.flatnonzero(follows[i] & follows[k]),
         )
-
-    @cached_property
-    def _inside(self) -> Elimination:
-        heights, number = self._chosen[0], self.tiling.numbers
-        i, k = self.tiling.pairs
-        none = np.zeros(0, dtype=np.int64)
-        return plan(number[i[heights]], number[k[heights]], self.tiling.pieces, none)
 
     @cached_property
     def _elimination(self) -> Elimination:

@@ -205,6 +205,23 @@ class Tiling:
         ]
 
     @cached_property
+    def inside(self) -> tuple[IntArray, Elimination]:
+        """Which pairs couple two vertices inside, and their matrix's elimination."""
+        row, column = self.pairs
+        both = np.flatnonzero(self.is_inside[row] & self.is_inside[column])
+        none = np.zeros(0, dtype=np.int64)
+        place = self.numbers
+        return both, plan(place[row[both]], place[column[both]], self.pieces, none)
+
+    @cached_property
+    def coupled(self) -> tuple[IntArray, IntArray, IntArray]:
+        """Which pairs couple a vertex inside to the loop, and the places of the two."""
+        row, column = self.pairs
+        chosen = np.flatnonzero(self.is_inside[row] & ~self.is_inside[column])
+        on_loop = self.numbers[column[chosen]] - len(self.interior)
+        return chosen, self.numbers[row[chosen]], on_loop
+
+    @cached_property
     def elimination(self) -> Elimination:
         """Of the interior from a matrix (n_v, n_v) with an entry for each of `pairs`."""
         pieces = [self.interior[piece] for piece in self.pieces]

@@ -229,13 +229,13 @@ class _AlongNormals(_Sliding):
     @property
     def stiffness(self) -> FloatArray:
         # Of Dirichlet's energy, which is the area where the map is conformal, else more.
-        return self.load * self.local.follower.stiffness
+        return self.load * self.local.follower.condensed.stiffness
 
     def unfold(self, loop: FloatArray, inside: FloatArray) -> FloatArray:
         local = self.local
         moved = local.follow(loop)
         still = np.zeros((len(loop), 1))
-        heights = local.follower.unfold(still, _softness(self.load) * inside[:, None])
+        heights = local.follower.condensed.unfold(still, _softness(self.load) * inside[:, None])
         moved[self.film.interior] += heights[self.film.interior] * local.normals
         return moved
 
@@ -244,7 +244,7 @@ class _AlongNormals(_Sliding):
         along = np.zeros((len(gradient), 1))
         inside = gradient[self.film.interior]
         along[self.film.interior, 0] = (inside * local.normals).sum(axis=1)
-        heights = local.follower.fold(along)[1][:, 0]
+        heights = local.follower.condensed.fold(along)[1][:, 0]
         return local.carry(gradient), _softness(self.load) * heights
 
 

@@ -1,4 +1,5 @@
-from .area import AreaFilm as AreaFilm
+from .area import AreaFilm as AreaFilm, AreaOfLoop as AreaOfLoop
+from .indefinite import IndefiniteFactor as IndefiniteFactor
 from .interior import LocalFilm as LocalFilm
 from .load import (
     FILM_LOADS as FILM_LOADS,
@@ -11,3 +12,4 @@ from .models import make_film as make_film
 from .plane import PlaneFilm as PlaneFilm, PolygonArea as PolygonArea
 from .protocol import Film as Film, FilmOfLoop as FilmOfLoop
 from .quadratic import QuadraticFilm as QuadraticFilm, Stiffness as Stiffness
+from .with_loop import LoopStiffness as LoopStiffness

@@ -19,12 +19,14 @@ from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.folds import is_folded, laid_anew
 from eulerplateau.film.free_moves import FreeInterior
 from eulerplateau.film.harmonic import Follower, balance, follower
+from eulerplateau.film.indefinite import IndefiniteFactor
 from eulerplateau.film.interior import FreeFilm, HeightsFilm, LocalFilm
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
-from eulerplateau.film.normal_moves import normal_heights
+from eulerplateau.film.normal_moves import NormalHeights, normal_heights
 from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
+from eulerplateau.film.with_loop import LoopStiffness
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
 from eulerplateau.mesh import Shape
 
@@ -163,6 +165,23 @@ class AreaOfLoop:
         """Return bending plus load * area of the loop; it slides along itself freely."""
         motions = partial(free_motions, loop, slides=True)
         return inextensible(loop, Area(self.local, load), motions)
+
+    def with_loop(
+        self, x_loop: FloatArray, load: float, loop: LoopStiffness, strip: bool
+    ) -> IndefiniteFactor:
+        """Factorise `load` times the film's Hessian on a loop with what that adds.
+
+        strip : whether a strip of the film follows the loop. Raises LinAlgError if a pivot
+        vanishes, or where there is no film.
+        """
+        found, moves = self.local.relax(x_loop), self.local.variations
+        assert isinstance(moves, NormalHeights)
+        chosen = moves if strip else moves.bare()
+        return chosen.with_loop(found.second, load, loop)
+
+    def flat_at(self, x_loop: FloatArray) -> bool:
+        """Return whether the film on this loop lies in a plane."""
+        return is_flat(self.local.tiling, self.local.relax(x_loop).x)
 
     def made_at(self, x_loop: FloatArray) -> bool:
         """Return whether the film has not tilted from where it was made."""

@@ -88,7 +88,7 @@ class FilmAtRest:
     @cached_property
     def condensed(self) -> Condensation:
         """The second variation with the interior eliminated."""
-        return self.local.variations.condense(self._second)
+        return self.local.variations.condense(self.second)
 
     @property
     def factorised(self) -> Condensation | None:
@@ -110,11 +110,12 @@ class FilmAtRest:
 
     def response(self, followed: FloatArray) -> FloatArray:
         """Return how u changes (n_u,) on a film whose mesh has moved (n_v, 3)."""
-        forces = self.local.variations.forces(self._second, followed)
+        forces = self.local.variations.forces(self.second, followed)
         return -self.condensed.solve(forces)
 
     @cached_property
-    def _second(self) -> FloatArray:
+    def second(self) -> FloatArray:
+        """The whole Hessian, a block (3, 3) for each of the tiling's pairs (m, 3, 3)."""
         return self.local.tiling.hessian(self.sides)
 
 

@@ -6,7 +6,7 @@ Of its interior they are the heights along normals (`NormalHeights`), or all the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -15,7 +15,9 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.elimination import Elimination, plan, summed
+from eulerplateau.film.indefinite import IndefiniteFactor
 from eulerplateau.film.tiling import Tiling, TriangleGeometry
+from eulerplateau.film.with_loop import FilmWithLoop, LoopStiffness
 
 # Width of the strip, in L: a circle's radius is 0.16. Where it reaches the middle between
 # two strands those on either side follow different ones, the less the better.
@@ -94,6 +96,27 @@ class NormalHeights:
 
     def condense(self, blocks: FloatArray) -> Condensation:
         """Eliminate the heights."""
+        up, across, kept = self._entries(blocks)
+        return factorise(self._elimination, np.concatenate([up, across, kept]))
+
+    def with_loop(
+        self, blocks: FloatArray, load: float, loop: LoopStiffness
+    ) -> IndefiniteFactor:
+        """Factorise the film's Hessian, `load` times, with what its loop adds.
+
+        Raises LinAlgError if a pivot vanishes.
+        """
+        up, across, kept = self._entries(blocks)
+        film = load * np.concatenate([up, across, across, kept])
+        return self._whole.factorise(film, loop)
+
+    def bare(self) -> NormalHeights:
+        """Return the variations in which no strip of the film follows the loop."""
+        weight = np.where(self.tiling.is_inside, 0.0, 1.0)
+        return replace(self, weight=weight)
+
+    def _entries(self, blocks: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return the Hessian's entries, flat, in the order of `_chosen`."""
         heights, coupling, loop = self._chosen
         i, k = self.tiling.pairs
         along = self._along(blocks)
@@ -101,9 +124,7 @@ class NormalHeights:
         across = self.weight[k[coupling], None] * along[coupling]
         weight = self.weight[i[loop]] * self.weight[k[loop]]
         kept = weight[:, None, None] * blocks[loop]
-        return factorise(
-            self._elimination, np.concatenate([up, across.ravel(), kept.ravel()])
-        )
+        return up, across.ravel(), kept.ravel()
 
     def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
         """Return n . H m (n_i,)."""
@@ -131,21 +152,41 @@ class NormalHeights:
         )
 
     @cached_property
-    def _elimination(self) -> Elimination:
-        tiling, number, (heights, coupling, loop) = (
-            self.tiling,
-            self.tiling.numbers,
-            self._chosen,
+    def _places(self) -> tuple[tuple[IntArray, IntArray], ...]:
+        """Rows and columns of `_entries`: heights first, three for each loop vertex last."""
+        number, (heights, coupling, loop) = self.tiling.numbers, self._chosen
+        i, k = self.tiling.pairs
+        on_loop = len(self.tiling.interior) + 3 * self.leader[:, None] + np.arange(3)
+        return (
+            (number[i[heights]], number[k[heights]]),
+            (np.repeat(number[i[coupling]], 3), on_loop[k[coupling]].ravel()),
+            (
+                np.repeat(on_loop[i[loop]], 3, axis=1).ravel(),
+                np.tile(on_loop[k[loop]], 3).ravel(),
+            ),
         )
-        i, k = tiling.pairs
-        n_i = len(tiling.interior)
-        on_loop = n_i + 3 * self.leader[:, None] + np.arange(3)
-        kept_row = np.repeat(on_loop[i[loop]], 3, axis=1)
-        kept_column = np.tile(on_loop[k[loop]], 3)
-        row = [number[i[heights]], np.repeat(number[i[coupling]], 3), kept_row.ravel()]
-        column = [number[k[heights]], on_loop[k[coupling]].ravel(), kept_column.ravel()]
-        kept = np.arange(n_i, n_i + 3 * len(tiling.loop))
-        return plan(np.concatenate(row), np.concatenate(column), tiling.pieces, kept)
+
+    @cached_property
+    def _elimination(self) -> Elimination:
+        row, column = (np.concatenate(parts) for parts in zip(*self._places, strict=True))
+        n_i = len(self.tiling.interior)
+        kept = np.arange(n_i, n_i + 3 * len(self.tiling.loop))
+        return plan(row, column, self.tiling.pieces, kept)
+
+    @cached_property
+    def _whole(self) -> FilmWithLoop:
+        bare = not (self.weight[self.tiling.interior] > 0).any()
+        # Without a strip it depends on the triangles alone.
+        if bare and self.tiling.with_loop:
+            return self.tiling.with_loop[0]
+        up, (inside, on_loop), kept = self._places
+        row = np.concatenate([up[0], inside, on_loop, kept[0]])
+        column = np.concatenate([up[1], on_loop, inside, kept[1]])
+        n_i, n_b = len(self.tiling.interior), len(self.tiling.loop)
+        found = FilmWithLoop(n_i, n_b, row, column)
+        if bare:
+            self.tiling.with_loop.append(found)
+        return found
 
 
 def normal_heights(tiling: Tiling, x: FloatArray, normals: FloatArray) -> NormalHeights:

@@ -12,7 +12,7 @@ a flat neighbourhood, where sliding inside the film costs nothing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +22,7 @@ from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.film import area_kernels
 from eulerplateau.film.dissection import LARGEST, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
+from eulerplateau.film.with_loop import FilmWithLoop
 from eulerplateau.mesh import neighbours, smallest_angle, unit
 
 
@@ -95,6 +96,10 @@ class Tiling:
     triangles: IntArray
     loop: IntArray
     interior: IntArray
+    # Where the entries of the film and its loop go, once that is known (normal_moves.py).
+    with_loop: list[FilmWithLoop] = field(
+        default_factory=list, init=False, repr=False, compare=False
+    )
 
     @property
     def n_v(self) -> int:

@@ -51,6 +51,19 @@ class Loop:
         stiffness: FloatArray = turn.T @ (turn / self.mean_lengths[:, None])
         return stiffness
 
+    def chain(self, tensions: FloatArray) -> FloatArray:
+        """Return 2 B + D^T diag(lambda / s) D as three rows (3, n_b); n_b is 5 at least.
+
+        They couple vertex v to itself, to v + 1 and to v + 2.
+        """
+        s, m = self.rest_lengths, self.mean_lengths
+        after = np.roll(m, -1)
+        # The same by the edges: each with itself, and with the next.
+        own = 2 * (1 / m + 1 / after) / s**2 + tensions / s
+        beside = -2 / (s * np.roll(s, -1) * after)
+        before = np.roll(beside, 1)
+        return np.stack([own + np.roll(own, 1) - 2 * before, beside + before - own, -beside])
+
     @cached_property
     def stiffest_row(self) -> float:
         """The largest sum of sizes in a row of 2 B, the bending's stiffness."""

@@ -13,14 +13,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability, Status
 from eulerplateau.solvers.models import Models
-from eulerplateau.solvers.second_variation import TangentModel
+from eulerplateau.solvers.second_variation import NewtonStep, TangentModel
 from eulerplateau.solvers.trust_region import trust_region_step
 
 _FIRST_RADIUS = 0.05
@@ -104,23 +104,21 @@ class Descent:
     def _advance(self, state: State) -> State | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
         energy, model, radius = self.energy, state.model, state.radius
-        full = _newton_step(model, radius)
+        full = model.newton_step(radius)
         while radius > _SMALLEST_RADIUS:
-            step = _bounded_step(energy, model, radius) if full is None else full
-            size = float(np.linalg.norm(step))
-            promised = float(model.gradient @ step + 0.5 * step @ (model.hessian @ step))
-            x = energy.constraint.project(model.x + model.displacement(step))
+            step = _bounded_step(energy, model.dense, radius) if full is None else full
+            x = energy.constraint.project(model.x + step.moved)
             gained = _change(energy, model.x, x)
             if x is not None and gained is not None:
                 moved = x - model.x
                 noise = _noise(energy, model.x, moved, model.tensions)
-                if gained <= 0.1 * promised or (
-                    abs(gained) <= noise and -promised <= noise
+                if gained <= 0.1 * step.promised or (
+                    abs(gained) <= noise and -step.promised <= noise
                 ):
-                    grow = size > 0.8 * radius and gained < 0.75 * promised
+                    grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
                     wider = min(2 * radius, _LARGEST_RADIUS) if grow else radius
                     return State(self.models.at(x, model), wider, state.iteration + 1)
-            radius, full = 0.25 * min(size, radius), None
+            radius, full = 0.25 * min(step.size, radius), None
         return None
 
 
@@ -151,16 +149,7 @@ def _change(energy: LoopEnergy, x: FloatArray, after: FloatArray | None) -> floa
         return None
 
 
-def _newton_step(model: TangentModel, radius: float) -> FloatArray | None:
-    """Return the Newton step if the Hessian is positive definite and it fits."""
-    try:
-        step: FloatArray = -cho_solve(cho_factor(model.hessian), model.gradient)
-    except LinAlgError:
-        return None
-    return step if float(np.linalg.norm(step)) <= radius else None
-
-
-def _bounded_step(energy: LoopEnergy, model: TangentModel, radius: float) -> FloatArray:
+def _bounded_step(energy: LoopEnergy, model: TangentModel, radius: float) -> NewtonStep:
     """Return the trust-region step, still along modes whose gain rounding would hide.
 
     A hexagon's saddle turns against its mesh almost for free: following that mode would
@@ -171,8 +160,6 @@ def _bounded_step(energy: LoopEnergy, model: TangentModel, radius: float) -> Flo
     gain = np.abs(slope) + 0.5 * np.abs(values) * radius
     live = gain > 4 * energy.rounding
     if not live.any():
-        return np.zeros_like(slope)
-    step: FloatArray = vectors[:, live] @ trust_region_step(
-        values[live], slope[live], radius
-    )
-    return step
+        return model.step(np.zeros_like(slope))
+    bounded = trust_region_step(values[live], slope[live], radius)
+    return model.step(vectors[:, live] @ bounded)

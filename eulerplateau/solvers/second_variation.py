@@ -17,12 +17,21 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import LinAlgError
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import EdgeTurns, LoopEnergy
+from eulerplateau.loop import EdgeTurns, LengthMetric, LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.tangent_coordinates import Columns, Coordinates, turned
+
+
+@dataclass(frozen=True)
+class NewtonStep:
+    """A displacement (n, d) of a loop, its size, and the change of energy it promises."""
+
+    moved: FloatArray
+    size: float
+    promised: float
 
 
 @dataclass(frozen=True)
@@ -55,6 +64,26 @@ class TangentModel:
     coordinates: Coordinates
     gradient: FloatArray
     hessian: FloatArray
+
+    @property
+    def dense(self) -> TangentModel:
+        """The model on all of the tangent space: this one."""
+        return self
+
+    def newton_step(self, radius: float) -> NewtonStep | None:
+        """Return the Newton step if the Hessian is positive definite and it fits."""
+        try:
+            step: FloatArray = -cho_solve(cho_factor(self.hessian), self.gradient)
+        except LinAlgError:
+            return None
+        return self.step(step) if float(np.linalg.norm(step)) <= radius else None
+
+    def step(self, coefficients: FloatArray) -> NewtonStep:
+        """Return the step with these tangent coefficients (m,)."""
+        curved = 0.5 * coefficients @ (self.hessian @ coefficients)
+        promised = float(self.gradient @ coefficients + curved)
+        size = float(np.linalg.norm(coefficients))
+        return NewtonStep(self.displacement(coefficients), size, promised)
 
     @cached_property
     def eigen(self) -> tuple[FloatArray, FloatArray]:
@@ -139,14 +168,29 @@ def _by_turns(
     free: FloatArray,
     turns: EdgeTurns,
 ) -> tuple[Coordinates, FloatArray, FloatArray, FloatArray]:
-    tensions = turns.metric.balance(force)
-    unbalanced = (force + energy.constraint.force(x, tensions)).reshape(-1, 1)
+    tensions, unbalanced = balanced(energy, x, force, free, turns.metric)
+    coordinates = turned(turns, free)
+    gradient = coordinates.slope(unbalanced.reshape(-1, 1))[:, 0]
+    return coordinates, tensions, gradient, unbalanced
+
+
+def balanced(
+    energy: LoopEnergy,
+    x: FloatArray,
+    force: FloatArray,
+    free: FloatArray,
+    metric: LengthMetric,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the tensions (n,) that balance a force (n, d) best, and what is left of it.
+
+    Of that the part along motions (d n, k) that are free is left out.
+    """
+    tensions = metric.balance(force)
+    left = (force + energy.constraint.force(x, tensions)).reshape(-1, 1)
     root = np.repeat(np.sqrt(energy.weights), x.shape[1])[:, None]
     motions = np.linalg.qr(free * root)[0] * root
-    unbalanced -= motions @ (motions.T @ (unbalanced / root**2))
-    coordinates = turned(turns, free)
-    gradient = coordinates.slope(unbalanced)[:, 0]
-    return coordinates, tensions, gradient, unbalanced.reshape(x.shape)
+    left -= motions @ (motions.T @ (left / root**2))
+    return tensions, left.reshape(x.shape)
 
 
 def _by_columns(

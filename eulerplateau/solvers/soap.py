@@ -9,17 +9,20 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
-from eulerplateau.film import FilmOfLoop, make_film
+from eulerplateau.film import AreaOfLoop, FilmOfLoop, make_film
 from eulerplateau.loop import close_with_lengths, largest_turning
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.large_loops.coarse_start import smoothed
-from eulerplateau.solvers.models import DenseModels
+from eulerplateau.solvers.large_loops.film_models import FilmModels
+from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
 from eulerplateau.threads import one_thread
 
+# Loops of more vertices are not condensed: film and loop are looked at together.
+_DENSE = 48
 # A soap film is sought near the last shape at most so many times in one solve.
 _SHAPES = 60
 # A rough start of a large loop is smoothed to what a loop of so many vertices can show.
@@ -73,6 +76,13 @@ def _tied(problem: Problem) -> FilmOfLoop | None:
         return None
 
 
+def _models(problem: Problem, film: FilmOfLoop, load: float) -> Models:
+    energy = film.energy(problem.loop, load)
+    if len(problem.loop.rest_lengths) <= _DENSE or not isinstance(film, AreaOfLoop):
+        return DenseModels(energy)
+    return FilmModels(energy, film, problem.loop, load)
+
+
 def _near(
     problem: Problem,
     shape: Shape,
@@ -91,7 +101,7 @@ def _near(
         try:
             shape = problem.film.prepared(problem.film.carried(shape, x_loop))
             film = problem.film.of_loop(shape)
-            models = DenseModels(film.energy(problem.loop, load))
+            models = _models(problem, film, load)
             descent = Descent(models, max_iterations - spent, observe)
             state, status = descent.run(x_loop)
         except LinAlgError:

@@ -1,0 +1,152 @@
+"""A film and its loop together: one sparse matrix, in which nothing is eliminated.
+
+Its unknowns, in this order, are the heights of the film inside (n_i), the displacements of
+the loop (3 n_b), the tensions of its edges (n_b), and a few that hold the loop against
+motions which cost nothing. Condensed to the loop it would be full; as it is, a nested
+dissection of film and loop factorises it in as little as a film without one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film.dissection import dissect
+from eulerplateau.film.elimination import Elimination, plan
+from eulerplateau.film.indefinite import IndefiniteFactor, factorise_indefinite
+
+_AXES = np.arange(3)
+# Bending couples a vertex of the loop to the two on either side.
+_REACH = 2
+
+
+@dataclass(frozen=True)
+class LoopStiffness:
+    """What a loop adds to the matrix of its film.
+
+    Attributes
+    ----------
+    chain : (3, n_b) float
+        Between vertex v and v, v + 1, v + 2: the same for all coordinates.
+    along : (n_b, 3) float
+        What edge v's tension does to vertex v + 1; to vertex v it does the opposite.
+    held : (3 n_b, m) float
+        Motions to which the solution is to be orthogonal.
+    pinned : (k,) int, vertices to which springs are fixed before, and taken away after
+        Without them the motions that are held would make the matrix singular.
+    stiffness : float, of these springs, and the scale of `held`
+    """
+
+    chain: FloatArray
+    along: FloatArray
+    held: FloatArray
+    pinned: IntArray
+    stiffness: float
+
+    @property
+    def n_held(self) -> int:
+        """Number of unknowns that hold the loop."""
+        return self.held.shape[1] + 3 * len(self.pinned)
+
+    def entries(self, first: int) -> tuple[FloatArray, IntArray, IntArray]:
+        """Return values (k,), rows and columns, of unknowns of the loop from `first` on.
+
+        Of entries that hold, the rows of the loop only.
+        """
+        n = self.chain.shape[1]
+        v = np.arange(n)
+        # A column for each coordinate of each vertex.
+        at = first + 3 * v[:, None] + _AXES
+        after = [np.roll(at, -step, axis=0) for step in range(_REACH + 1)]
+        values, row, column = [], [], []
+
+        def add(value: FloatArray, one: IntArray, other: IntArray) -> None:
+            values.append(np.broadcast_to(value, one.shape).ravel())
+            row.append(one.ravel())
+            column.append(np.broadcast_to(other, one.shape).ravel())
+
+        for step, other in enumerate(after):
+            add(self.chain[step, :, None], at, other)
+            if step:
+                add(self.chain[step, :, None], other, at)
+        tension = first + 3 * n + v[:, None] + 0 * _AXES
+        for sign, vertex in ((-1.0, at), (1.0, after[1])):
+            add(sign * self.along, tension, vertex)
+            add(sign * self.along, vertex, tension)
+        last = first + 4 * n
+        for number, motion in enumerate(self.held.T):
+            add(self.stiffness * motion.reshape(n, 3), at, np.array(last + number))
+        springs = last + self.held.shape[1] + np.arange(3 * len(self.pinned))
+        add(np.array(self.stiffness), at[self.pinned].ravel(), springs)
+        add(np.array(self.stiffness), springs, springs)
+        add(np.array(self.stiffness), at[self.pinned], at[self.pinned])
+        return np.concatenate(values), np.concatenate(row), np.concatenate(column)
+
+
+@dataclass(frozen=True)
+class FilmWithLoop:
+    """Where entries go while a film and its loop are eliminated together.
+
+    Attributes
+    ----------
+    n_i, n_b : vertices inside and on the loop
+    row, column : (m,) int, of the film's entries
+    """
+
+    n_i: int
+    n_b: int
+    row: IntArray
+    column: IntArray
+    _known: list[tuple[IntArray, Elimination]] = field(default_factory=list, init=False)
+
+    def factorise(self, film: FloatArray, loop: LoopStiffness) -> IndefiniteFactor:
+        """Factorise the matrix with the film's entries (m,) and those of its loop.
+
+        Raises LinAlgError if a pivot vanishes.
+        """
+        values, row, column = loop.entries(self.n_i)
+        elimination = self._elimination(row, column, loop)
+        return factorise_indefinite(elimination, np.concatenate([film, values]))
+
+    def _elimination(
+        self, row: IntArray, column: IntArray, loop: LoopStiffness
+    ) -> Elimination:
+        """Return it, made once as long as the same vertices are pinned and as much held."""
+        key = np.append(loop.pinned, loop.n_held)
+        for known, found in self._known:
+            if np.array_equal(known, key):
+                return found
+        pieces = self._pieces()
+        first = self.n_i + 4 * self.n_b
+        kept = np.arange(first, first + loop.n_held)
+        whole = np.concatenate([self.row, row]), np.concatenate([self.column, column])
+        found = plan(*whole, pieces, kept)
+        self._known[:] = [(key, found)]
+        return found
+
+    def _pieces(self) -> list[IntArray]:
+        """Return the unknowns, but for those that hold the loop, in pieces."""
+        n_i, n_b = self.n_i, self.n_b
+        # A node for each height, and one for each vertex of the loop.
+        loop = n_i + np.arange(n_b)
+        reach = [np.roll(loop, -step) for step in range(1, _REACH + 1)]
+        row = np.concatenate([self._node(self.row), *(_REACH * [loop]), *reach])
+        column = np.concatenate([self._node(self.column), *reach, *(_REACH * [loop])])
+        graph = csr_array((np.ones(len(row)), (row, column)), shape=2 * (n_i + n_b,))
+        pieces = dissect(graph, loop, np.arange(n_i + n_b))
+        owner = np.empty(n_i + n_b, dtype=np.int64)
+        for number, piece in enumerate(pieces):
+            owner[piece] = number
+        # A tension is regular once a vertex it pulls at is there: it comes with the later.
+        later = np.maximum(owner[loop], np.roll(owner[loop], -1))
+        owner = np.concatenate([owner[:n_i], np.repeat(owner[loop], 3), later])
+        order = np.argsort(owner, kind="stable")
+        cuts = np.searchsorted(owner[order], np.arange(1, len(pieces)))
+        return list(np.split(order, cuts))
+
+    def _node(self, unknown: IntArray) -> IntArray:
+        return np.where(unknown < self.n_i, unknown, self.n_i + (unknown - self.n_i) // 3)
+

@@ -1,0 +1,177 @@
+"""How the energy of a soap film with a large loop is looked at: film and loop together.
+
+Condensed to its loop, a film couples each vertex of it to every other. With its heights
+left in, and the tensions of the edges as unknowns beside the displacements they hold, the
+second variation is one sparse matrix, which costs as little to factorise as the film alone
+(film/with_loop.py). A Newton step is one solve with it, its negative pivots count the ways
+down, and its inverse finds the lowest modes. What that does not do, steps where there is a
+way down and the spectrum next to a transition, is left to the dense model.
+
+For steps no strip of the film follows its loop: on a curved film the matrix is then off by
+O(h), which costs part of a step. The spectrum is that of the film with its strip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film import AreaOfLoop, IndefiniteFactor, LoopStiffness
+from eulerplateau.loop import Loop, LoopEnergy, length_metric
+from eulerplateau.solvers.equilibrium import Stability
+from eulerplateau.solvers.models import DenseModels
+from eulerplateau.solvers.second_variation import (
+    NewtonStep,
+    TangentModel,
+    balanced,
+    stability,
+    tangent_model,
+)
+
+# Vectors of which the inverse's Krylov space is made, and how often it is applied.
+_BLOCK, _ROUNDS = 3, 12
+
+
+@dataclass(frozen=True)
+class FilmModel:
+    """The second-order model of a soap film at a loop x (n, 3): see TangentModel.
+
+    unbalanced : (n, 3) float, what tensions do not balance of the force
+    """
+
+    film: AreaOfLoop
+    load: float
+    loop: Loop
+    energy: LoopEnergy
+    x: FloatArray
+    tensions: FloatArray
+    unbalanced: FloatArray
+    residual: float
+    rounding: float
+
+    @cached_property
+    def dense(self) -> TangentModel:
+        """The model on all of the tangent space."""
+        return tangent_model(self.energy, self.x)
+
+    @cached_property
+    def stiffness(self) -> LoopStiffness:
+        """What the loop adds to the matrix of its film."""
+        n, weights = len(self.x), self.energy.weights[:, None]
+        motions = self.energy.free_motions(self.x)
+        root = np.sqrt(np.repeat(weights, 3))[:, None]
+        held = np.linalg.qr(motions * root)[0] * root
+        pinned = np.arange(3) * n // 3
+        chain = self.loop.chain(self.tensions)
+        scale = float(chain[0].max())
+        along = scale * self.loop.chords(self.x) / self.loop.rest_lengths[:, None]
+        return LoopStiffness(chain, along, held, pinned, scale)
+
+    @cached_property
+    def bare(self) -> IndefiniteFactor | None:
+        """The factorised matrix without a strip; None if a pivot vanishes."""
+        return self._factorised(strip=False)
+
+    def n_below(self, factor: IndefiniteFactor) -> int:
+        """Return how many directions in the tangent space lead down."""
+        return factor.n_negative - len(self.x) - self.stiffness.held.shape[1]
+
+    def newton_step(self, radius: float) -> NewtonStep | None:
+        """Return the Newton step, cut short at the radius; None where a way leads down."""
+        if self.bare is None or self.n_below(self.bare) != 0:
+            return None
+        moved = self._inverse(self.bare, -self.unbalanced.reshape(-1, 1))
+        moved = moved.reshape(self.x.shape)
+        size = float(np.sqrt(self.energy.weights @ np.square(moved).sum(axis=1)))
+        part = min(1.0, radius / size) if size > 0 else 1.0
+        slope = float(np.vdot(self.unbalanced, moved))
+        promised = (part - 0.5 * part**2) * slope
+        return NewtonStep(part * moved, part * size, promised)
+
+    def spectrum(self) -> Stability:
+        """Return the lowest eigenvalue if it is positive beyond doubt, else all of them."""
+        factor = self.bare if self.film.flat_at(self.x) else self._factorised(strip=True)
+        if factor is not None and self.n_below(factor) == 0:
+            sizes = np.abs(self.stiffness.chain) / self.energy.weights
+            rows = sizes[0] + sum(sizes[k] + np.roll(sizes[k], k) for k in (1, 2))
+            bound = 10 * float(np.finfo(np.float64).eps * rows.max())
+            lowest = self._lowest(factor, bound)
+            if lowest > bound:
+                return Stability(np.array([lowest]), bound)
+        return stability(self.dense)
+
+    def _factorised(self, strip: bool) -> IndefiniteFactor | None:
+        try:
+            return self.film.with_loop(self.x, self.load, self.stiffness, strip)
+        except LinAlgError:
+            return None
+
+    def _inverse(self, factor: IndefiniteFactor, forces: FloatArray) -> FloatArray:
+        """Return the displacements (3 n, m) of least energy under forces (3 n, m)."""
+        n, n_i = len(forces), len(self.film.film.interior)
+        size = n_i + n + n // 3 + self.stiffness.n_held
+        rhs = np.zeros((size, forces.shape[1]))
+        rhs[n_i : n_i + n] = forces
+        return factor.solve(rhs)[n_i : n_i + n]
+
+    def _lowest(self, factor: IndefiniteFactor, bound: float) -> float:
+        """Return the lowest eigenvalue, to `bound` or ten digits, of a positive spectrum.
+
+        By Rayleigh and Ritz among what the inverse makes of random vectors.
+        """
+        root = np.sqrt(np.repeat(self.energy.weights, 3))[:, None]
+        block = np.random.default_rng(len(self.x)).standard_normal((len(root), _BLOCK))
+        basis = np.zeros((len(root), 0))
+        images = np.zeros((len(root), 0))
+        lowest = np.inf
+        for _ in range(_ROUNDS):
+            for _ in range(2):
+                block = block - basis @ (basis.T @ block)
+            block = np.linalg.qr(block)[0]
+            image = root * self._inverse(factor, root * block)
+            basis, images = np.hstack([basis, block]), np.hstack([images, image])
+            compliance = basis.T @ images
+            softest = float(np.linalg.eigvalsh(0.5 * (compliance + compliance.T))[-1])
+            before, lowest = lowest, 1 / softest
+            if abs(before - lowest) <= max(0.1 * bound, 1e-10 * abs(lowest)):
+                break
+            block = image
+        return lowest
+
+
+@dataclass(frozen=True)
+class FilmModels(DenseModels):
+    """Film and loop together."""
+
+    film: AreaOfLoop
+    loop: Loop
+    load: float
+
+    def at(self, x: FloatArray, before: FilmModel | None = None) -> FilmModel:
+        """Return the model at a loop (n, 3)."""
+        forces = self.energy.forces(x)
+        total = sum(forces[1:], start=forces[0])
+        tensions, unbalanced = balanced(
+            self.energy, x, total, self.energy.free_motions(x), length_metric(self.loop, x)
+        )
+        forces.append(self.energy.constraint.force(x, tensions))
+        largest = max(float(np.abs(force).max()) for force in forces)
+        return FilmModel(
+            film=self.film,
+            load=self.load,
+            loop=self.loop,
+            energy=self.energy,
+            x=x,
+            tensions=tensions,
+            unbalanced=unbalanced,
+            residual=float(np.abs(unbalanced).max()) / largest,
+            rounding=self.energy.rounding * float(np.abs(x).max()) / largest,
+        )
+
+    def spectrum(self, model: FilmModel) -> Stability:
+        """Return the lowest eigenvalue, or the whole spectrum."""
+        return model.spectrum()

@@ -15,6 +15,7 @@ The interior is eliminated part by part, see elimination.py.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -22,6 +23,7 @@ from scipy.sparse import csc_array
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.dissection import dissect
 from eulerplateau.film.elimination import Elimination, Part, plan
+from eulerplateau.film.solve_kernels import solve_fronts
 from eulerplateau.threads import one_thread
 
 
@@ -54,20 +56,32 @@ class Condensation:
         """
         n_i = len(forces)
         order = self._order[:n_i]
-        ordered = np.zeros((len(self._order), forces.size // n_i))
-        ordered[:n_i] = forces.reshape(n_i, -1)[order]
-        for part in self._parts:
-            inside, left = part.pulled(ordered[part.start : part.stop])
-            ordered[part.start : part.stop] = inside
-            ordered[part.around] += left
-        ordered[n_i:] = 0.0
-        for part in reversed(self._parts):
-            ordered[part.start : part.stop] = part.unfolded(
-                ordered[part.around], ordered[part.start : part.stop]
-            )
-        x = np.empty_like(ordered[:n_i])
-        x[order] = ordered[:n_i]
+        columns = np.zeros((forces.size // n_i, len(self._order)))
+        columns[:, :n_i] = forces.reshape(n_i, -1)[order].T
+        solve_fronts(*self._packed, columns)
+        x = np.empty((n_i, len(columns)))
+        x[order] = columns[:, :n_i].T
         return x.reshape(forces.shape)
+
+    @cached_property
+    def _packed(self) -> tuple[IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray]:
+        """All parts as arrays, for solve_kernels.py."""
+        parts = self._parts
+        counts = np.array([len(part.around) for part in parts], dtype=np.int64)
+        starts = np.array([part.start for part in parts], dtype=np.int64)
+        stops = np.array([part.stop for part in parts], dtype=np.int64)
+        sizes = (stops - starts) * (stops - starts + counts)
+        pieces = [piece.ravel("F") for part in parts for piece in (part.factor, part.half)]
+        around = [part.around for part in parts]
+        none = [np.zeros(0, dtype=np.int64)]
+        return (
+            starts,
+            stops,
+            np.append(0, np.cumsum(counts)),
+            np.concatenate(none + around),
+            np.cumsum(sizes) - sizes,
+            np.concatenate([np.zeros(0), *pieces]),
+        )
 
     def carry(self, forces: FloatArray) -> FloatArray:
         """Return f_b - L_bi L_ii^-1 f_i (n_b, m): what forces (n, m) come to on the loop.

@@ -110,8 +110,11 @@ class FilmAtRest:
 
     def response(self, followed: FloatArray) -> FloatArray:
         """Return how u changes (n_u,) on a film whose mesh has moved (n_v, 3)."""
-        forces = self.local.variations.forces(self.second, followed)
-        return -self.condensed.solve(forces)
+        return self.answered(followed, self.condensed)
+
+    def answered(self, followed: FloatArray, inverse: Condensation) -> FloatArray:
+        """Return the same by a factorised interior, which may be that of a film near by."""
+        return -inverse.solve(self.local.variations.forces(self.second, followed))
 
     @cached_property
     def second(self) -> FloatArray:
@@ -141,6 +144,8 @@ class LocalFilm(ABC):
     variations: InteriorUnknowns
     # The last films asked for: a solver comes back to them for force, energy and Hessian.
     _recent: list[FilmAtRest] = field(default_factory=list, init=False, repr=False)
+    # The last interior that was factorised: it serves films near by as well.
+    _inverse: list[Condensation] = field(default_factory=list, init=False, repr=False)
 
     @property
     @abstractmethod
@@ -208,10 +213,11 @@ class LocalFilm(ABC):
         """Return the film to begin with: the last, and its response as far as it goes."""
         last = self._recent[0] if self._recent else None
         u = np.zeros(self.variations.size) if last is None else last.u
-        if last is not None and last.factorised is not None:
+        inverse = self._known()
+        if last is not None and inverse is not None:
             moved = base - last.x
             moved[self.tiling.interior] += self.variations.displaced(u)
-            response = last.response(moved)
+            response = last.answered(moved, inverse)
             for part in _PARTS:
                 state = self._at(base, u + part * response)
                 if state is not None:
@@ -220,6 +226,11 @@ class LocalFilm(ABC):
         if state is None:
             raise LinAlgError("a triangle of the film has folded over")
         return state
+
+    def _known(self) -> Condensation | None:
+        """Return a factorised interior of the last film, or of one near it, if there is."""
+        own = self._recent[0].factorised if self._recent else None
+        return self._inverse[0] if own is None and self._inverse else own
 
     def unfolded(self, sides: TriangleGeometry) -> bool:
         """Return whether every triangle shows the side that the reference shows."""
@@ -244,7 +255,7 @@ class HeightsFilm(LocalFilm):
 
     def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
         variations = self.variations
-        inverse = self._recent[0].factorised if self._recent else None
+        inverse = self._known()
         error, fresh = np.inf, False
         for _ in range(_STEPS):
             force = variations.work(state.gradient)
@@ -254,6 +265,7 @@ class HeightsFilm(LocalFilm):
             fresh = inverse is None or error > _SLOW * before
             if inverse is None or fresh:
                 inverse = variations.stiffness(state.sides)
+                self._inverse[:] = [inverse]
             state = self._descend(base, state, force, inverse)
         raise LinAlgError("the film does not come to rest")
 

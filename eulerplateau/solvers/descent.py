@@ -45,11 +45,15 @@ class State:
 
 @dataclass(frozen=True)
 class Descent:
-    """A descent of one energy: to its limit of iterations, shown to `observe`."""
+    """A descent of one energy: to its limit of iterations, shown to `observe`.
+
+    It may end before, at a loop of which `ends` says so.
+    """
 
     models: Models
     max_iterations: int
     observe: Callable[[FloatArray], None] = lambda x_loop: None
+    ends: Callable[[TangentModel], bool] = lambda model: False
 
     @property
     def energy(self) -> LoopEnergy:
@@ -78,7 +82,7 @@ class Descent:
                 return state, Status.STALLED
             state = after
             self.observe(state.model.x)
-            if not self.energy.holds(state.model.x):
+            if not self.energy.holds(state.model.x) or self.ends(state.model):
                 break
         return state, Status.ITERATION_LIMIT
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from functools import partial
 
 from scipy.linalg import LinAlgError
 
@@ -12,13 +12,14 @@ from eulerplateau.errors import MeshError
 from eulerplateau.film import AreaOfLoop, FilmOfLoop, make_film
 from eulerplateau.loop import close_with_lengths, largest_turning
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers.descent import Descent
+from eulerplateau.solvers.descent import Descent, State
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.large_loops.coarse_start import smoothed
 from eulerplateau.solvers.large_loops.film_models import FilmModels
 from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
+from eulerplateau.solvers.second_variation import TangentModel
 from eulerplateau.threads import one_thread
 
 # Loops of more vertices are not condensed: film and loop are looked at together.
@@ -27,6 +28,9 @@ _DENSE = 48
 _SHAPES = 60
 # A rough start of a large loop is smoothed to what a loop of so many vertices can show.
 _SMOOTH = DENSE_LOOP // 2
+# The residual at which a film that has tilted from where it was made is made anew: one
+# more step brings it to rest.
+_CLOSE = 1e-5
 # Degrees by which a crumpled loop turns at some vertex: no soap film is sought across it.
 _CRUMPLED = 90.0
 
@@ -102,17 +106,35 @@ def _near(
             shape = problem.film.prepared(problem.film.carried(shape, x_loop))
             film = problem.film.of_loop(shape)
             models = _models(problem, film, load)
-            descent = Descent(models, max_iterations - spent, observe)
+            left = max_iterations - spent
+            descent = Descent(models, left, observe, partial(_elsewhere, film))
             state, status = descent.run(x_loop)
         except LinAlgError:
-            return None if found is None else replace(found, status=Status.STALLED)
+            return None if found is None else found(Status.STALLED)
         spent += state.iteration
-        stability = state.stability or models.spectrum(state.model)
-        x_loop, tensions = state.model.x, state.model.tensions
+        x_loop = state.model.x
         shape = film.shape(x_loop)
-        found = problem.record(shape, tensions, load, status, stability, spent)
+        found = partial(_record, problem, load, models, shape, state, spent)
         own = models.energy.holds(x_loop) and film.made_at(x_loop)
         lost = status is Status.STALLED or problem.pinched(shape)
         if own or lost or spent >= max_iterations:
-            return found
-    return found
+            return found(status)
+    return None if found is None else found(status)
+
+
+def _elsewhere(film: FilmOfLoop, model: TangentModel) -> bool:
+    """Return whether a film nearly at rest is not where it was made: it is made anew."""
+    return model.residual < _CLOSE and not film.made_at(model.x)
+
+
+def _record(
+    problem: Problem,
+    load: float,
+    models: Models,
+    shape: Shape,
+    state: State,
+    spent: int,
+    status: Status,
+) -> Equilibrium:
+    stability = state.stability or models.spectrum(state.model)
+    return problem.record(shape, state.model.tensions, load, status, stability, spent)

@@ -74,7 +74,7 @@ class FilmModel:
     @cached_property
     def bare(self) -> IndefiniteFactor | None:
         """The factorised matrix without a strip; None if a pivot vanishes."""
-        return self._factorised(strip=False)
+        return self.factorised(strip=False)
 
     def n_below(self, factor: IndefiniteFactor) -> int:
         """Return how many directions in the tangent space lead down."""
@@ -84,7 +84,7 @@ class FilmModel:
         """Return the Newton step, cut short at the radius; None where a way leads down."""
         if self.bare is None or self.n_below(self.bare) != 0:
             return None
-        moved = self._inverse(self.bare, -self.unbalanced.reshape(-1, 1))
+        moved = self.moved(self.bare, -self.unbalanced.reshape(-1, 1))
         moved = moved.reshape(self.x.shape)
         size = float(np.sqrt(self.energy.weights @ np.square(moved).sum(axis=1)))
         part = min(1.0, radius / size) if size > 0 else 1.0
@@ -94,7 +94,7 @@ class FilmModel:
 
     def spectrum(self) -> Stability:
         """Return the lowest eigenvalue if it is positive beyond doubt, else all of them."""
-        factor = self.bare if self.film.flat_at(self.x) else self._factorised(strip=True)
+        factor = self.bare if self.film.flat_at(self.x) else self.factorised(strip=True)
         if factor is not None and self.n_below(factor) == 0:
             sizes = np.abs(self.stiffness.chain) / self.energy.weights
             rows = sizes[0] + sum(sizes[k] + np.roll(sizes[k], k) for k in (1, 2))
@@ -104,13 +104,13 @@ class FilmModel:
                 return Stability(np.array([lowest]), bound)
         return stability(self.dense)
 
-    def _factorised(self, strip: bool) -> IndefiniteFactor | None:
+    def factorised(self, strip: bool) -> IndefiniteFactor | None:
         try:
             return self.film.with_loop(self.x, self.load, self.stiffness, strip)
         except LinAlgError:
             return None
 
-    def _inverse(self, factor: IndefiniteFactor, forces: FloatArray) -> FloatArray:
+    def moved(self, factor: IndefiniteFactor, forces: FloatArray) -> FloatArray:
         """Return the displacements (3 n, m) of least energy under forces (3 n, m)."""
         n, n_i = len(forces), len(self.film.film.interior)
         size = n_i + n + n // 3 + self.stiffness.n_held
@@ -132,7 +132,7 @@ class FilmModel:
             for _ in range(2):
                 block = block - basis @ (basis.T @ block)
             block = np.linalg.qr(block)[0]
-            image = root * self._inverse(factor, root * block)
+            image = root * self.moved(factor, root * block)
             basis, images = np.hstack([basis, block]), np.hstack([images, image])
             compliance = basis.T @ images
             softest = float(np.linalg.eigvalsh(0.5 * (compliance + compliance.T))[-1])

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from scipy.linalg import LinAlgError
 from scipy.linalg.blas import dgemm
 from scipy.linalg.lapack import dsytrf, dsytrs
@@ -91,7 +92,13 @@ def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> Indef
     return IndefiniteFactor(negative, elimination.order, tuple(parts))
 
 
+@njit(cache=True)
 def negative_pivots(factor: FloatArray, pivots: IntArray) -> int:
     """Count negative eigenvalues in Bunch and Kaufman's D; 2 x 2 pivots have one each."""
-    single = pivots > 0
-    return int(np.sum(np.diag(factor)[single] < 0) + np.sum(~single) // 2)
+    twice = 0
+    for j in range(pivots.shape[0]):
+        if pivots[j] < 0:
+            twice += 1
+        elif factor[j, j] < 0.0:
+            twice += 2
+    return twice // 2

@@ -19,6 +19,8 @@ from eulerplateau.film.elimination import Elimination, plan
 from eulerplateau.film.indefinite import IndefiniteFactor, factorise_indefinite
 
 _AXES = np.arange(3)
+# Nodes of a piece: LAPACK solves with an indefinite block more slowly than with another.
+_LARGEST = 48
 # Bending couples a vertex of the loop to the two on either side.
 _REACH = 2
 
@@ -136,7 +138,7 @@ class FilmWithLoop:
         row = np.concatenate([self._node(self.row), *(_REACH * [loop]), *reach])
         column = np.concatenate([self._node(self.column), *reach, *(_REACH * [loop])])
         graph = csr_array((np.ones(len(row)), (row, column)), shape=2 * (n_i + n_b,))
-        pieces = dissect(graph, loop, np.arange(n_i + n_b))
+        pieces = dissect(graph, loop, np.arange(n_i + n_b), _LARGEST)
         owner = np.empty(n_i + n_b, dtype=np.int64)
         for number, piece in enumerate(pieces):
             owner[piece] = number

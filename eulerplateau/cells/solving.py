@@ -102,7 +102,7 @@ def _descended(
             broken_off = searched is Status.ITERATION_LIMIT and iterations < limit
             if not (broken_off and guard.holds(x)):
                 break
-        spectrum = state.stability or stability(state.model)
+        spectrum = state.stability or stability(state.model.dense)
     except (LinAlgError, ValueError):
         # Numbers that overflow make matrices that are not finite.
         return measured(cell, x, sigma, ks)
@@ -114,7 +114,7 @@ def _descended(
         residual=state.model.residual,
         iterations=iterations,
         stability=spectrum,
-        status=status_of(cell, state.model, spectrum, searched),
+        status=status_of(cell, state.model.dense, spectrum, searched),
     )
 
 

@@ -16,18 +16,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film.area_term import Area
 from eulerplateau.film.folds import is_folded, laid_anew
+from eulerplateau.film.free_film import FreeFilm
 from eulerplateau.film.free_moves import FreeInterior
 from eulerplateau.film.harmonic import Follower, balance, follower
 from eulerplateau.film.indefinite import IndefiniteFactor
-from eulerplateau.film.interior import FreeFilm, HeightsFilm, LocalFilm
+from eulerplateau.film.interior import HeightsFilm, LocalFilm
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
 from eulerplateau.film.normal_moves import NormalHeights, normal_heights
 from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 from eulerplateau.film.with_loop import LoopStiffness
-from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
+from eulerplateau.loop import Loop, LoopEnergy, free_motions, inextensible, sliding
 from eulerplateau.mesh import Shape
 
 # Tilings whose patterns are kept: of a sweep on a few meshes none is planned twice.
@@ -225,46 +227,6 @@ class AreaOfLoop:
         local = _local(tiling, x, sides, follower(tiling, sides), bool(kept["free"]))
         local.begin_at(kept["x"], kept["u"])
         return AreaOfLoop(self.film, local)
-
-
-@dataclass(frozen=True)
-class Area(Term):
-    """load * A(x_b), A the least area of films near one shape (interior.py).
-
-    Its Hessian is a full (3 n_b, 3 n_b) matrix that changes with the loop.
-    """
-
-    local: LocalFilm
-    load: float
-
-    @property
-    def rounding(self) -> float:
-        """What rounding alone leaves of a force, per unit of position.
-
-        A film of tension 1 pulls with the sum of half the sides across a vertex.
-        """
-        return float(np.finfo(np.float64).eps) * 8 * abs(self.load)
-
-    def force(self, x: FloatArray) -> FloatArray:
-        """Return the gradient (n_b, 3)."""
-        return self.load * self.local.relax(x).force
-
-    def hessian(self, x: FloatArray) -> FloatArray:
-        """Return the second derivative (3 n_b, 3 n_b)."""
-        return self.load * self.local.relax(x).hessian
-
-    def change(self, x: FloatArray, step: FloatArray) -> float:
-        """Return the change of the area, summed triangle by triangle as differences."""
-        before, after = self.local.relax(x), self.local.relax(x + step)
-        return self.load * self.local.tiling.change(before.x, after.x)
-
-    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
-        """Return the derivative of the force by the load."""
-        return self.local.relax(x).force if parameter == "load" else None
-
-    def holds(self, x: FloatArray) -> bool:
-        """Return whether the film is still close enough to where it was made."""
-        return self.local.holds(self.local.relax(x).sides)
 
 
 def local_film(tiling: Tiling, x: FloatArray, free: bool = False) -> LocalFilm:

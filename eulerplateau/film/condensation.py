@@ -64,7 +64,9 @@ class Condensation:
         return x.reshape(forces.shape)
 
     @cached_property
-    def _packed(self) -> tuple[IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray]:
+    def _packed(
+        self,
+    ) -> tuple[IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray]:
         """All parts as arrays, for solve_kernels.py."""
         parts = self._parts
         counts = np.array([len(part.around) for part in parts], dtype=np.int64)

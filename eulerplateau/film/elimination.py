@@ -40,7 +40,7 @@ class Part:
     factor: FloatArray
 
     def unfolded(self, x: FloatArray, inside: FloatArray | None = None) -> FloatArray:
-        """Return x[start:stop] (n, m) of x[around], in equilibrium or C^-T inside off it."""
+        """Return x[start:stop] (n, m) of x[around]: in equilibrium, plus C^-T inside."""
         own = -self.half.T @ x
         if inside is not None:
             own += inside

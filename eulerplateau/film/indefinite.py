@@ -86,9 +86,7 @@ def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> Indef
         if len(below):
             response = dsytrs(factor, pivots, below.T, lower=1)[0]
             remainders[number] = dgemm(-1.0, below, response, 1.0, block[own:, own:])
-        parts.append(
-            _Part(front.start, front.stop, front.around, response, factor, pivots)
-        )
+        parts.append(_Part(front.start, front.stop, front.around, response, factor, pivots))
     return IndefiniteFactor(negative, elimination.order, tuple(parts))
 
 

@@ -35,7 +35,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.condensation import Condensation
-from eulerplateau.film.free_moves import FreeInterior, at_rest, is_rest
+from eulerplateau.film.free_moves import is_rest
 from eulerplateau.film.harmonic import Follower
 from eulerplateau.film.normal_moves import InteriorUnknowns, NormalHeights
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
@@ -282,24 +282,3 @@ class HeightsFilm(LocalFilm):
                 return after
             step, slope = 0.5 * step, 0.5 * slope
         raise LinAlgError("no step makes the film smaller")
-
-
-@dataclass(frozen=True)
-class FreeFilm(LocalFilm):
-    """A film whose vertices inside are free: a discrete minimal surface."""
-
-    variations: FreeInterior
-
-    @property
-    def is_free(self) -> bool:
-        """Whether its vertices are free to move: they are."""
-        return True
-
-    def is_central(self, sides: TriangleGeometry) -> bool:
-        """Return whether the film is where it was made: it is as good anywhere."""
-        return True
-
-    def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
-        x = at_rest(self.variations, state.x)
-        sides, u = self.tiling.sides(x), (x - base)[self.tiling.interior].ravel()
-        return FilmAtRest(self, x, u, sides, self.tiling.gradient(sides))

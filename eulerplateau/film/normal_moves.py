@@ -153,7 +153,7 @@ class NormalHeights:
 
     @cached_property
     def _places(self) -> tuple[tuple[IntArray, IntArray], ...]:
-        """Rows and columns of `_entries`: heights first, three for each loop vertex last."""
+        """Rows and columns of `_entries`: heights, then three for a loop vertex."""
         number, (heights, coupling, loop) = self.tiling.numbers, self._chosen
         i, k = self.tiling.pairs
         on_loop = len(self.tiling.interior) + 3 * self.leader[:, None] + np.arange(3)

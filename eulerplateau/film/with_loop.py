@@ -51,7 +51,7 @@ class LoopStiffness:
     @property
     def n_held(self) -> int:
         """Number of unknowns that hold the loop."""
-        return self.held.shape[1] + 3 * len(self.pinned)
+        return int(self.held.shape[1]) + 3 * len(self.pinned)
 
     def entries(self, first: int) -> tuple[FloatArray, IntArray, IntArray]:
         """Return values (k,), rows and columns, of unknowns of the loop from `first` on.
@@ -151,4 +151,3 @@ class FilmWithLoop:
 
     def _node(self, unknown: IntArray) -> IntArray:
         return np.where(unknown < self.n_i, unknown, self.n_i + (unknown - self.n_i) // 3)
-

@@ -62,7 +62,9 @@ class Loop:
         own = 2 * (1 / m + 1 / after) / s**2 + tensions / s
         beside = -2 / (s * np.roll(s, -1) * after)
         before = np.roll(beside, 1)
-        return np.stack([own + np.roll(own, 1) - 2 * before, beside + before - own, -beside])
+        return np.stack(
+            [own + np.roll(own, 1) - 2 * before, beside + before - own, -beside]
+        )
 
     @cached_property
     def stiffest_row(self) -> float:

@@ -19,7 +19,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability, Status
-from eulerplateau.solvers.models import Models
+from eulerplateau.solvers.models import Model, Models
 from eulerplateau.solvers.second_variation import NewtonStep, TangentModel
 from eulerplateau.solvers.trust_region import trust_region_step
 
@@ -37,7 +37,7 @@ _NEAR = 0.1
 class State:
     """Where a descent has come to; `stability` where it has been asked for."""
 
-    model: TangentModel
+    model: Model
     radius: float
     iteration: int
     stability: Stability | None = None
@@ -53,7 +53,7 @@ class Descent:
     models: Models
     max_iterations: int
     observe: Callable[[FloatArray], None] = lambda x_loop: None
-    ends: Callable[[TangentModel], bool] = lambda model: False
+    ends: Callable[[Model], bool] = lambda model: False
 
     @property
     def energy(self) -> LoopEnergy:
@@ -138,7 +138,7 @@ def _noise(
     return 4 * (energy.rounding * float(np.abs(moved).sum()) + by_lengths)
 
 
-def _at_rounding(model: TangentModel) -> bool:
+def _at_rounding(model: Model) -> bool:
     """Whether the forces balance as well as double precision can tell."""
     return model.residual <= max(4 * model.rounding, 1e-13)
 

@@ -89,7 +89,7 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     energy = film.energy(problem.loop, found.load)
     models = models_for(problem.film, problem.loop, energy)
     x_loop = film.project(found.shape.x_loop)
-    model = models.at(x_loop)
+    model = models.at(x_loop).dense
     modes = {}
     for number, column in enumerate(models.modes(model, count).T):
         moved = film.displacement(x_loop, (column / model.scale).reshape(x_loop.shape))

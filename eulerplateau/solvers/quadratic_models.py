@@ -17,7 +17,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.solvers.equilibrium import Settled, Stability
 from eulerplateau.solvers.large_loops.subspace_model import lowest_modes, subspace_model
-from eulerplateau.solvers.models import DenseModels, Models
+from eulerplateau.solvers.models import DenseModels, Model, Models
 from eulerplateau.solvers.primal_dual import settle
 from eulerplateau.solvers.second_variation import TangentModel
 
@@ -62,17 +62,18 @@ class SubspaceModels(_OneMatrix):
         """Whether the spectrum is known wherever a descent ends: it costs too much."""
         return False
 
-    def at(self, x: FloatArray, before: TangentModel | None = None) -> TangentModel:
+    def at(self, x: FloatArray, before: Model | None = None) -> TangentModel:
         """Return the model at a loop (n_b, 3)."""
-        return subspace_model(self.energy, self.loop, self.matrix, x, before)
+        near = None if before is None else before.dense
+        return subspace_model(self.energy, self.loop, self.matrix, x, near)
 
-    def spectrum(self, model: TangentModel) -> Stability:
+    def spectrum(self, model: Model) -> Stability:
         """Return the lowest eigenvalues: every one that is not stable, and one more."""
-        return lowest_modes(self.loop, self.matrix, model)[0]
+        return lowest_modes(self.loop, self.matrix, model.dense)[0]
 
-    def modes(self, model: TangentModel, count: int) -> FloatArray:
+    def modes(self, model: Model, count: int) -> FloatArray:
         """Return as many modes (3 n_b, m) as are unstable or neutral, and one more."""
-        return lowest_modes(self.loop, self.matrix, model)[1][:, :count]
+        return lowest_modes(self.loop, self.matrix, model.dense)[1][:, :count]
 
 
 def quadratic_models(loop: Loop, energy: LoopEnergy) -> Models:

@@ -16,10 +16,9 @@ from eulerplateau.solvers.descent import Descent, State
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.large_loops.coarse_start import smoothed
 from eulerplateau.solvers.large_loops.film_models import FilmModels
-from eulerplateau.solvers.models import DenseModels, Models
+from eulerplateau.solvers.models import DenseModels, Model, Models
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
-from eulerplateau.solvers.second_variation import TangentModel
 from eulerplateau.threads import one_thread
 
 # Loops of more vertices are not condensed: film and loop are looked at together.
@@ -81,6 +80,7 @@ def _tied(problem: Problem) -> FilmOfLoop | None:
 
 
 def _models(problem: Problem, film: FilmOfLoop, load: float) -> Models:
+    """Return how a film's energy is looked at, by the size of its loop."""
     energy = film.energy(problem.loop, load)
     if len(problem.loop.rest_lengths) <= _DENSE or not isinstance(film, AreaOfLoop):
         return DenseModels(energy)
@@ -122,7 +122,7 @@ def _near(
     return None if found is None else found(status)
 
 
-def _elsewhere(film: FilmOfLoop, model: TangentModel) -> bool:
+def _elsewhere(film: FilmOfLoop, model: Model) -> bool:
     """Return whether a film nearly at rest is not where it was made: it is made anew."""
     return model.residual < _CLOSE and not film.made_at(model.x)
 

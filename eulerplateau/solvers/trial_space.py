@@ -234,8 +234,8 @@ class _AlongNormals(_Sliding):
     def unfold(self, loop: FloatArray, inside: FloatArray) -> FloatArray:
         local = self.local
         moved = local.follow(loop)
-        still = np.zeros((len(loop), 1))
-        heights = local.follower.condensed.unfold(still, _softness(self.load) * inside[:, None])
+        still, inside = np.zeros((len(loop), 1)), _softness(self.load) * inside[:, None]
+        heights = local.follower.condensed.unfold(still, inside)
         moved[self.film.interior] += heights[self.film.interior] * local.normals
         return moved
 

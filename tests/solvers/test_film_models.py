@@ -9,7 +9,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.film import AreaOfLoop
 from eulerplateau.loop import Loop, close_with_lengths
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.solvers import Problem, solve, soap, stability
+from eulerplateau.solvers import Problem, soap, solve, stability
 from eulerplateau.solvers.equilibrium import Status
 from eulerplateau.solvers.large_loops.film_models import FilmModel, FilmModels
 from tests.helpers import shapes, soap_films
@@ -98,7 +98,9 @@ def test_step_keeps_the_lengths_and_promises_what_the_dense_model_does(
     step, dense = model.newton_step(10.0), model.dense.newton_step(10.0)
     assert step is not None
     assert dense is not None
-    np.testing.assert_allclose(step.moved, dense.moved, atol=1e-8 * np.abs(dense.moved).max())
+    np.testing.assert_allclose(
+        step.moved, dense.moved, atol=1e-8 * np.abs(dense.moved).max()
+    )
     assert step.size == pytest.approx(dense.size, rel=1e-8)
     assert step.promised == pytest.approx(dense.promised, rel=1e-8)
     # Cut short it promises what the model says of it.

@@ -23,7 +23,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.film import AreaOfLoop, IndefiniteFactor, LoopStiffness
 from eulerplateau.loop import Loop, LoopEnergy, length_metric
 from eulerplateau.solvers.equilibrium import Stability
-from eulerplateau.solvers.models import DenseModels
+from eulerplateau.solvers.models import DenseModels, Model
 from eulerplateau.solvers.second_variation import (
     NewtonStep,
     TangentModel,
@@ -78,7 +78,7 @@ class FilmModel:
 
     def n_below(self, factor: IndefiniteFactor) -> int:
         """Return how many directions in the tangent space lead down."""
-        return factor.n_negative - len(self.x) - self.stiffness.held.shape[1]
+        return factor.n_negative - len(self.x) - int(self.stiffness.held.shape[1])
 
     def newton_step(self, radius: float) -> NewtonStep | None:
         """Return the Newton step, cut short at the radius; None where a way leads down."""
@@ -105,6 +105,7 @@ class FilmModel:
         return stability(self.dense)
 
     def factorised(self, strip: bool) -> IndefiniteFactor | None:
+        """Factorise the matrix, a strip following or not; None if a pivot vanishes."""
         try:
             return self.film.with_loop(self.x, self.load, self.stiffness, strip)
         except LinAlgError:
@@ -151,7 +152,7 @@ class FilmModels(DenseModels):
     loop: Loop
     load: float
 
-    def at(self, x: FloatArray, before: FilmModel | None = None) -> FilmModel:
+    def at(self, x: FloatArray, before: Model | None = None) -> FilmModel:
         """Return the model at a loop (n, 3)."""
         forces = self.energy.forces(x)
         total = sum(forces[1:], start=forces[0])
@@ -172,6 +173,7 @@ class FilmModels(DenseModels):
             rounding=self.energy.rounding * float(np.abs(x).max()) / largest,
         )
 
-    def spectrum(self, model: FilmModel) -> Stability:
+    def spectrum(self, model: Model) -> Stability:
         """Return the lowest eigenvalue, or the whole spectrum."""
+        assert isinstance(model, FilmModel)
         return model.spectrum()

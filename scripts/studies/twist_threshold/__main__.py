@@ -98,7 +98,7 @@ def transverse_eigenvalue(problem: Problem, film: AreaFilm, found: Equilibrium) 
     """Return the lowest eigenvalue across the plane of a flat film, rigid motions apart."""
     loop, shape = problem.loop, found.shape
     tiling = film.tiling(shape.triangles)
-    pull = follower(tiling, tiling.sides(shape.x)).stiffness
+    pull = follower(tiling, tiling.sides(shape.x)).condensed.stiffness
     stiffness = 2 * loop.bending_matrix + loop.tension_stiffness(found.tensions)
     root = np.sqrt(loop.mean_lengths)
     hessian = (stiffness + found.load * pull) / (root * root[:, None])

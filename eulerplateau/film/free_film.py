@@ -1,0 +1,31 @@
+"""A curved film as a function of its loop, its vertices free to move inside."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film.free_moves import FreeInterior, at_rest
+from eulerplateau.film.interior import FilmAtRest, LocalFilm
+from eulerplateau.film.tiling import TriangleGeometry
+
+
+@dataclass(frozen=True)
+class FreeFilm(LocalFilm):
+    """A film whose vertices inside are free: a discrete minimal surface."""
+
+    variations: FreeInterior
+
+    @property
+    def is_free(self) -> bool:
+        """Whether its vertices are free to move: they are."""
+        return True
+
+    def is_central(self, sides: TriangleGeometry) -> bool:
+        """Return whether the film is where it was made: it is as good anywhere."""
+        return True
+
+    def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
+        x = at_rest(self.variations, state.x)
+        sides, u = self.tiling.sides(x), (x - base)[self.tiling.interior].ravel()
+        return FilmAtRest(self, x, u, sides, self.tiling.gradient(sides))

@@ -74,10 +74,10 @@ def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> Indef
     negative = 0
     for number, front in enumerate(elimination.fronts):
         own = front.stop - front.start
+        if not own:  # of nothing that is kept
+            continue
         block = front.assemble(entries, remainders)
-        factor, pivots, failed = dsytrf(
-            block[:own, :own], lower=1, lwork=_COLUMNS * max(own, 1)
-        )
+        factor, pivots, failed = dsytrf(block[:own, :own], lower=1, lwork=_COLUMNS * own)
         if failed:
             raise LinAlgError("a pivot vanishes")
         negative += negative_pivots(factor, pivots)

@@ -108,9 +108,10 @@ class Descent:
     def _advance(self, state: State) -> State | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
         energy, model, radius = self.energy, state.model, state.radius
-        full = model.newton_step(radius)
         while radius > _SMALLEST_RADIUS:
-            step = _bounded_step(energy, model.dense, radius) if full is None else full
+            step = model.newton_step(radius)
+            if step is None:
+                step = _bounded_step(energy, model.dense, radius)
             x = energy.constraint.project(model.x + step.moved)
             gained = _change(energy, model.x, x)
             if x is not None and gained is not None:
@@ -122,7 +123,7 @@ class Descent:
                     grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
                     wider = min(2 * radius, _LARGEST_RADIUS) if grow else radius
                     return State(self.models.at(x, model), wider, state.iteration + 1)
-            radius, full = 0.25 * min(step.size, radius), None
+            radius = 0.25 * min(step.size, radius)
         return None
 
 

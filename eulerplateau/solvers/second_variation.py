@@ -72,11 +72,19 @@ class TangentModel:
 
     def newton_step(self, radius: float) -> NewtonStep | None:
         """Return the Newton step if the Hessian is positive definite and it fits."""
+        step = self._newton
+        if step is None or float(np.linalg.norm(step)) > radius:
+            return None
+        return self.step(step)
+
+    @cached_property
+    def _newton(self) -> FloatArray | None:
+        """The Newton step's coefficients (m,), None unless the Hessian is definite."""
         try:
             step: FloatArray = -cho_solve(cho_factor(self.hessian), self.gradient)
         except LinAlgError:
             return None
-        return self.step(step) if float(np.linalg.norm(step)) <= radius else None
+        return step
 
     def step(self, coefficients: FloatArray) -> NewtonStep:
         """Return the step with these tangent coefficients (m,)."""

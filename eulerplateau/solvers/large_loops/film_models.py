@@ -82,15 +82,22 @@ class FilmModel:
 
     def newton_step(self, radius: float) -> NewtonStep | None:
         """Return the Newton step, cut short at the radius; None where a way leads down."""
-        if self.bare is None or self.n_below(self.bare) != 0:
+        moved = self._newton
+        if moved is None:
             return None
-        moved = self.moved(self.bare, -self.unbalanced.reshape(-1, 1))
-        moved = moved.reshape(self.x.shape)
         size = float(np.sqrt(self.energy.weights @ np.square(moved).sum(axis=1)))
         part = min(1.0, radius / size) if size > 0 else 1.0
         slope = float(np.vdot(self.unbalanced, moved))
         promised = (part - 0.5 * part**2) * slope
         return NewtonStep(part * moved, part * size, promised)
+
+    @cached_property
+    def _newton(self) -> FloatArray | None:
+        """The whole Newton step (n, 3); None where a way leads down."""
+        if self.bare is None or self.n_below(self.bare) != 0:
+            return None
+        moved = self.moved(self.bare, -self.unbalanced.reshape(-1, 1))
+        return moved.reshape(self.x.shape)
 
     def spectrum(self) -> Stability:
         """Return the lowest eigenvalue if it is positive beyond doubt, else all of them."""

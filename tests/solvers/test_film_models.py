@@ -116,6 +116,23 @@ def test_no_newton_step_leads_to_a_saddle(problem: Problem) -> None:
     assert model_at(problem, problem.disk.x, BELOW).newton_step(10.0) is None
 
 
+def test_far_from_a_saddle_the_step_is_that_of_a_shifted_hessian(problem: Problem) -> None:
+    """It promises what the dense model says of it, and the energy falls by about that."""
+    model = model_at(problem, problem.disk.x * [1.05, 0.95, 1.0], 2500.0)
+    assert model.residual > 1e-2
+    assert model.dense.eigenvalues[0] < 0
+    step = model.newton_step(1e-4)
+    assert step is not None
+    assert step.size == pytest.approx(1e-4)
+    said = model.dense.step(model.dense.coefficients(step.moved))
+    assert step.promised == pytest.approx(said.promised, rel=1e-8)
+    x = model.energy.constraint.project(model.x + step.moved)
+    assert x is not None
+    fallen = model.energy.change(model.x, x - model.x)
+    assert step.promised < 0
+    assert fallen == pytest.approx(step.promised, rel=0.05)
+
+
 @pytest.mark.parametrize("bent", [False, True])
 def test_lowest_eigenvalue_is_the_dense_one_within_its_bound(
     problem: Problem, bent: bool

@@ -13,7 +13,7 @@ O(h), which costs part of a step. The spectrum is that of the film with its stri
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -32,6 +32,10 @@ from eulerplateau.solvers.second_variation import (
     tangent_model,
 )
 
+# The residual from which on a loop is far from rest, and shifts that are tried there: the
+# first is as large as the softest bending mode of a bare loop.
+_FAR = 1e-2
+_SHIFT, _LARGER, _LARGEST = 2e4, 3.0, 1e12
 # Vectors of which the inverse's Krylov space is made, and how often it is applied.
 _BLOCK, _ROUNDS = 3, 12
 
@@ -52,6 +56,10 @@ class FilmModel:
     unbalanced: FloatArray
     residual: float
     rounding: float
+    # Steps that have been asked for, by the shift of the Hessian.
+    _steps: dict[float, FloatArray | None] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     @cached_property
     def dense(self) -> TangentModel:
@@ -81,23 +89,34 @@ class FilmModel:
         return factor.n_negative - len(self.x) - int(self.stiffness.held.shape[1])
 
     def newton_step(self, radius: float) -> NewtonStep | None:
-        """Return the Newton step, cut short at the radius; None where a way leads down."""
-        moved = self._newton
-        if moved is None:
-            return None
+        """Return the Newton step, cut short at the radius.
+
+        Far from rest, where a way leads down, the Hessian is shifted until none does. None
+        near rest: such a step need not lead away from a saddle.
+        """
+        shift = 0.0
+        moved = self._newton(shift)
+        while moved is None:
+            if self.residual < _FAR or shift > _LARGEST:
+                return None
+            shift = max(_SHIFT, _LARGER * shift)
+            moved = self._newton(shift)
         size = float(np.sqrt(self.energy.weights @ np.square(moved).sum(axis=1)))
         part = min(1.0, radius / size) if size > 0 else 1.0
         slope = float(np.vdot(self.unbalanced, moved))
-        promised = (part - 0.5 * part**2) * slope
+        curvature = -slope - shift * size**2
+        promised = part * slope + 0.5 * part**2 * curvature
         return NewtonStep(part * moved, part * size, promised)
 
-    @cached_property
-    def _newton(self) -> FloatArray | None:
-        """The whole Newton step (n, 3); None where a way leads down."""
-        if self.bare is None or self.n_below(self.bare) != 0:
-            return None
-        moved = self.moved(self.bare, -self.unbalanced.reshape(-1, 1))
-        return moved.reshape(self.x.shape)
+    def _newton(self, shift: float) -> FloatArray | None:
+        """Return the step (n, 3) with a shifted Hessian; None where a way leads down."""
+        if shift not in self._steps:
+            factor = self.factorised(strip=False, shift=shift) if shift else self.bare
+            moved = None
+            if factor is not None and self.n_below(factor) == 0:
+                moved = self.moved(factor, -self.unbalanced.reshape(-1, 1))
+            self._steps[shift] = None if moved is None else moved.reshape(self.x.shape)
+        return self._steps[shift]
 
     def spectrum(self) -> Stability:
         """Return the lowest eigenvalue if it is positive beyond doubt, else all of them."""
@@ -111,10 +130,16 @@ class FilmModel:
                 return Stability(np.array([lowest]), bound)
         return stability(self.dense)
 
-    def factorised(self, strip: bool) -> IndefiniteFactor | None:
-        """Factorise the matrix, a strip following or not; None if a pivot vanishes."""
+    def factorised(self, strip: bool, shift: float = 0.0) -> IndefiniteFactor | None:
+        """Factorise the matrix, a strip following or not; None if a pivot vanishes.
+
+        shift : what is added to all eigenvalues of the second variation
+        """
+        chain = self.stiffness.chain.copy()
+        chain[0] += shift * self.energy.weights
+        stiffness = replace(self.stiffness, chain=chain)
         try:
-            return self.film.with_loop(self.x, self.load, self.stiffness, strip)
+            return self.film.with_loop(self.x, self.load, stiffness, strip)
         except LinAlgError:
             return None
 

@@ -25,7 +25,7 @@ from eulerplateau.film.indefinite import IndefiniteFactor
 from eulerplateau.film.interior import HeightsFilm, LocalFilm
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
-from eulerplateau.film.normal_moves import NormalHeights, normal_heights
+from eulerplateau.film.normal_moves import normal_heights
 from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 from eulerplateau.film.with_loop import LoopStiffness
@@ -176,10 +176,9 @@ class AreaOfLoop:
         strip : whether a strip of the film follows the loop. Raises LinAlgError if a pivot
         vanishes, or where there is no film.
         """
-        found, moves = self.local.relax(x_loop), self.local.variations
-        assert isinstance(moves, NormalHeights)
-        chosen = moves if strip else moves.bare()
-        return chosen.with_loop(found.second, load, loop)
+        found = self.local.relax(x_loop)
+        self.local.keeps_inverse(found)
+        return self.local.variations.with_loop(found.second, load, loop, strip)
 
     def flat_at(self, x_loop: FloatArray) -> bool:
         """Return whether the film on this loop lies in a plane."""

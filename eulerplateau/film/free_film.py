@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.free_moves import FreeInterior, at_rest
+from eulerplateau.film.condensation import Condensation
+from eulerplateau.film.free_moves import STILL, FreeInterior, at_rest
 from eulerplateau.film.interior import FilmAtRest, LocalFilm
 from eulerplateau.film.tiling import TriangleGeometry
 
@@ -24,6 +25,9 @@ class FreeFilm(LocalFilm):
     def is_central(self, sides: TriangleGeometry) -> bool:
         """Return whether the film is where it was made: it is as good anywhere."""
         return True
+
+    def _stiffness(self, sides: TriangleGeometry) -> Condensation:
+        return self.variations.stiffened(sides, STILL)[0]
 
     def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
         x = at_rest(self.variations, state.x)

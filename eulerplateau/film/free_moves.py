@@ -16,7 +16,9 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.elimination import Elimination, plan, summed
+from eulerplateau.film.indefinite import IndefiniteFactor
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
+from eulerplateau.film.with_loop import LoopStiffness
 
 _AXES = np.arange(3)
 # Rounding of forces of unit tension along an edge, in eps: some twenty of them are summed.
@@ -74,6 +76,12 @@ class FreeInterior:
     def condense(self, blocks: FloatArray) -> Condensation:
         """Eliminate all displacements inside."""
         return factorise(self._elimination, self._stiffened(blocks, STILL).ravel())
+
+    def with_loop(
+        self, blocks: FloatArray, load: float, loop: LoopStiffness, strip: bool
+    ) -> IndefiniteFactor:
+        """Raise LinAlgError: a free film is condensed."""
+        raise LinAlgError("a free film is condensed")
 
     def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
         """Return H m inside (3 n_i,)."""

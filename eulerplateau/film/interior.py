@@ -144,7 +144,7 @@ class LocalFilm(ABC):
     variations: InteriorUnknowns
     # The last films asked for: a solver comes back to them for force, energy and Hessian.
     _recent: list[FilmAtRest] = field(default_factory=list, init=False, repr=False)
-    # The last interior that was factorised: it serves films near by as well.
+    # The last interior that was factorised, of a film that keeps it for those near by.
     _inverse: list[Condensation] = field(default_factory=list, init=False, repr=False)
 
     @property
@@ -155,6 +155,10 @@ class LocalFilm(ABC):
     @abstractmethod
     def is_central(self, sides: TriangleGeometry) -> bool:
         """Return whether a film at rest is where this one was made."""
+
+    @abstractmethod
+    def _stiffness(self, sides: TriangleGeometry) -> Condensation:
+        """Return the factorised interior of a film."""
 
     @abstractmethod
     def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
@@ -227,6 +231,14 @@ class LocalFilm(ABC):
             raise LinAlgError("a triangle of the film has folded over")
         return state
 
+    def keeps_inverse(self, found: FilmAtRest) -> None:
+        """Keep the factorised interior, first that of this film, for films near by.
+
+        They come to rest in steps that are cheaper, and less far below rounding.
+        """
+        if not self._inverse:
+            self._inverse.append(self._stiffness(found.sides))
+
     def _known(self) -> Condensation | None:
         """Return a factorised interior of the last film, or of one near it, if there is."""
         own = self._recent[0].factorised if self._recent else None
@@ -253,6 +265,9 @@ class HeightsFilm(LocalFilm):
         """Return whether the film's normals are those at which it was made."""
         return self.tilt(sides) > _NO_TILT
 
+    def _stiffness(self, sides: TriangleGeometry) -> Condensation:
+        return self.variations.stiffness(sides)
+
     def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
         variations = self.variations
         inverse = self._known()
@@ -265,7 +280,8 @@ class HeightsFilm(LocalFilm):
             fresh = inverse is None or error > _SLOW * before
             if inverse is None or fresh:
                 inverse = variations.stiffness(state.sides)
-                self._inverse[:] = [inverse]
+                if self._inverse:
+                    self._inverse[:] = [inverse]
             state = self._descend(base, state, force, inverse)
         raise LinAlgError("the film does not come to rest")
 

@@ -15,7 +15,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.elimination import Elimination, plan, summed
-from eulerplateau.film.indefinite import IndefiniteFactor
+from eulerplateau.film.indefinite import IndefiniteFactor, factorise_indefinite
 from eulerplateau.film.tiling import Tiling, TriangleGeometry
 from eulerplateau.film.with_loop import FilmWithLoop, LoopStiffness
 
@@ -41,6 +41,15 @@ class InteriorUnknowns(Protocol):
         """Eliminate the unknowns of a Hessian, given by its blocks (m, 3, 3) of pairs.
 
         What remains is 3 n_b x 3 n_b. Raises LinAlgError unless the area resists them.
+        """
+
+    def with_loop(
+        self, blocks: FloatArray, load: float, loop: LoopStiffness, strip: bool
+    ) -> IndefiniteFactor:
+        """Factorise a Hessian, `load` times, with what the film's loop adds.
+
+        strip : whether a strip of the film follows the loop. Raises LinAlgError if a pivot
+        vanishes, or where nothing but condensing will do.
         """
 
     def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
@@ -100,15 +109,13 @@ class NormalHeights:
         return factorise(self._elimination, np.concatenate([up, across, kept]))
 
     def with_loop(
-        self, blocks: FloatArray, load: float, loop: LoopStiffness
+        self, blocks: FloatArray, load: float, loop: LoopStiffness, strip: bool
     ) -> IndefiniteFactor:
-        """Factorise the film's Hessian, `load` times, with what its loop adds.
-
-        Raises LinAlgError if a pivot vanishes.
-        """
-        up, across, kept = self._entries(blocks)
+        """Factorise the film's Hessian, `load` times, with what its loop adds."""
+        moves = self if strip else self.bare()
+        up, across, kept = moves._entries(blocks)
         film = load * np.concatenate([up, across, across, kept])
-        return self._whole.factorise(film, loop)
+        return factorise_indefinite(*moves._whole.assemble(film, loop))
 
     def bare(self) -> NormalHeights:
         """Return the variations in which no strip of the film follows the loop."""
@@ -175,18 +182,13 @@ class NormalHeights:
 
     @cached_property
     def _whole(self) -> FilmWithLoop:
-        bare = not (self.weight[self.tiling.interior] > 0).any()
-        # Without a strip it depends on the triangles alone.
-        if bare and self.tiling.with_loop:
-            return self.tiling.with_loop[0]
         up, (inside, on_loop), kept = self._places
         row = np.concatenate([up[0], inside, on_loop, kept[0]])
         column = np.concatenate([up[1], on_loop, inside, kept[1]])
         n_i, n_b = len(self.tiling.interior), len(self.tiling.loop)
-        found = FilmWithLoop(n_i, n_b, row, column)
-        if bare:
-            self.tiling.with_loop.append(found)
-        return found
+        # Without a strip it depends on the triangles alone.
+        bare = not (self.weight[self.tiling.interior] > 0).any()
+        return FilmWithLoop(n_i, n_b, row, column, self.tiling.with_loop if bare else [])
 
 
 def normal_heights(tiling: Tiling, x: FloatArray, normals: FloatArray) -> NormalHeights:

@@ -22,7 +22,6 @@ from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.film import area_kernels
 from eulerplateau.film.dissection import LARGEST, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
-from eulerplateau.film.with_loop import FilmWithLoop
 from eulerplateau.mesh import neighbours, smallest_angle, unit
 
 
@@ -97,7 +96,7 @@ class Tiling:
     loop: IntArray
     interior: IntArray
     # Where the entries of the film and its loop go, once that is known (normal_moves.py).
-    with_loop: list[FilmWithLoop] = field(
+    with_loop: list[tuple[IntArray, Elimination]] = field(
         default_factory=list, init=False, repr=False, compare=False
     )
 

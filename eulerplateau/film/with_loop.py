@@ -8,7 +8,7 @@ dissection of film and loop factorises it in as little as a film without one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -16,7 +16,6 @@ from scipy.sparse import csr_array
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.dissection import dissect
 from eulerplateau.film.elimination import Elimination, plan
-from eulerplateau.film.indefinite import IndefiniteFactor, factorise_indefinite
 
 _AXES = np.arange(3)
 # Nodes of a piece: LAPACK solves with an indefinite block more slowly than with another.
@@ -96,29 +95,28 @@ class FilmWithLoop:
     ----------
     n_i, n_b : vertices inside and on the loop
     row, column : (m,) int, of the film's entries
+    known : what has been found, by the vertices that are pinned and the number held
     """
 
     n_i: int
     n_b: int
     row: IntArray
     column: IntArray
-    _known: list[tuple[IntArray, Elimination]] = field(default_factory=list, init=False)
+    known: list[tuple[IntArray, Elimination]]
 
-    def factorise(self, film: FloatArray, loop: LoopStiffness) -> IndefiniteFactor:
-        """Factorise the matrix with the film's entries (m,) and those of its loop.
-
-        Raises LinAlgError if a pivot vanishes.
-        """
+    def assemble(
+        self, film: FloatArray, loop: LoopStiffness
+    ) -> tuple[Elimination, FloatArray]:
+        """Return the matrix of a film's entries (m,) and its loop's, as it is factorised."""
         values, row, column = loop.entries(self.n_i)
-        elimination = self._elimination(row, column, loop)
-        return factorise_indefinite(elimination, np.concatenate([film, values]))
+        return self._elimination(row, column, loop), np.concatenate([film, values])
 
     def _elimination(
         self, row: IntArray, column: IntArray, loop: LoopStiffness
     ) -> Elimination:
         """Return it, made once as long as the same vertices are pinned and as much held."""
         key = np.append(loop.pinned, loop.n_held)
-        for known, found in self._known:
+        for known, found in self.known:
             if np.array_equal(known, key):
                 return found
         pieces = self._pieces()
@@ -126,7 +124,7 @@ class FilmWithLoop:
         kept = np.arange(first, first + loop.n_held)
         whole = np.concatenate([self.row, row]), np.concatenate([self.column, column])
         found = plan(*whole, pieces, kept)
-        self._known[:] = [(key, found)]
+        self.known[:] = [(key, found)]
         return found
 
     def _pieces(self) -> list[IntArray]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import cast
 
 from scipy.linalg import LinAlgError
 
@@ -82,9 +83,9 @@ def _tied(problem: Problem) -> FilmOfLoop | None:
 def _models(problem: Problem, film: FilmOfLoop, load: float) -> Models:
     """Return how a film's energy is looked at, by the size of its loop."""
     energy = film.energy(problem.loop, load)
-    if len(problem.loop.rest_lengths) <= _DENSE or not isinstance(film, AreaOfLoop):
+    if len(problem.loop.rest_lengths) <= _DENSE:
         return DenseModels(energy)
-    return FilmModels(energy, film, problem.loop, load)
+    return FilmModels(energy, cast(AreaOfLoop, film), problem.loop, load)
 
 
 def _near(

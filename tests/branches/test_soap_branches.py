@@ -64,9 +64,9 @@ def test_twisted_films_are_mirror_images_of_each_other() -> None:
         assert one.value == pytest.approx(other.value, rel=1e-8)
         assert energy(one) == pytest.approx(energy(other), rel=1e-8)
         mirrored = one.x * [1.0, 1.0, -1.0]
-        # Where triangles of the regular mesh tie, Delaunay's may be either: nothing to a
-        # film whose mesh errs by 1e-2.
-        assert loop_distance(mirrored, other.x) < 1e-5
+        # Where triangles of the regular mesh tie, Delaunay's may be either, by rounding: a
+        # hundredth at most of the 1e-2 by which the mesh errs.
+        assert loop_distance(mirrored, other.x) < 1e-4
         assert loop_distance(one.x, other.x) > 1e-4
 
 

@@ -107,7 +107,7 @@ class FilmWithLoop:
     def assemble(
         self, film: FloatArray, loop: LoopStiffness
     ) -> tuple[Elimination, FloatArray]:
-        """Return the matrix of a film's entries (m,) and its loop's, as it is factorised."""
+        """Return the matrix of a film's entries (m,) and its loop's, to be factorised."""
         values, row, column = loop.entries(self.n_i)
         return self._elimination(row, column, loop), np.concatenate([film, values])
 

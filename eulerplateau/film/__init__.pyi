@@ -1,5 +1,8 @@
 from .area import AreaFilm as AreaFilm, AreaOfLoop as AreaOfLoop
-from .indefinite import IndefiniteFactor as IndefiniteFactor
+from .indefinite import (
+    IndefiniteFactor as IndefiniteFactor,
+    negative_pivots as negative_pivots,
+)
 from .interior import LocalFilm as LocalFilm
 from .load import (
     FILM_LOADS as FILM_LOADS,

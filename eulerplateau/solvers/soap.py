@@ -81,9 +81,12 @@ def _tied(problem: Problem) -> FilmOfLoop | None:
 
 
 def _models(problem: Problem, film: FilmOfLoop, load: float) -> Models:
-    """Return how a film's energy is looked at, by the size of its loop."""
+    """Return how a film's energy is looked at, by the size of its loop.
+
+    And by whether that resists more than bending, which is no chain of its vertices.
+    """
     energy = film.energy(problem.loop, load)
-    if len(problem.loop.rest_lengths) <= _DENSE:
+    if len(problem.loop.rest_lengths) <= _DENSE or problem.loop.terms:
         return DenseModels(energy)
     return FilmModels(energy, cast(AreaOfLoop, film), problem.loop, load)
 

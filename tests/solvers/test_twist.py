@@ -146,6 +146,20 @@ def test_many_turns_end_where_strands_meet_and_never_beyond(film: str) -> None:
     assert 0 < writhe(problem, found) < 1.2
 
 
+def test_a_large_loop_under_a_soap_film_is_lost_at_its_critical_link_too() -> None:
+    mesh, nu = disk(72), 1.0
+    x = mesh.x + 1e-3 * np.random.default_rng(1).standard_normal(mesh.x.shape)
+    for part in (0.93, 1.03):
+        link = part * critical_link("area", nu, ROUND, 2)
+        problem = Problem(mesh, "area", twist_ratio=ROUND, link=link)
+        found = solve(problem, 16 * np.pi**3 * nu, x)
+        if part < 1:
+            assert found.is_minimum
+            assert abs(writhe(problem, found)) < 1e-9
+        else:
+            assert abs(writhe(problem, found)) > 0.5
+
+
 def test_in_its_plane_a_loop_keeps_the_twist_it_was_given() -> None:
     mesh = disk(48)
     bare = solve(Problem(mesh, "area", in_plane=True), 500.0)

@@ -31,6 +31,7 @@ from scipy.linalg import LinAlgError
 from scipy.linalg.lapack import dsysv, dsytrf, dsytrs
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film import negative_pivots
 from eulerplateau.loop import (
     RIGID_MOTIONS,
     LengthMetric,
@@ -159,7 +160,7 @@ def shifted_inverse(
     )
     if info:
         raise LinAlgError("the shift is an eigenvalue")
-    below = 3 * _negative_pivots(factor, pivots)
+    below = 3 * negative_pivots(factor, pivots)
     del factor, deflated
     complement = _schur_complement(space, inverse)
     size = len(complement)
@@ -168,7 +169,7 @@ def shifted_inverse(
     )
     if info:
         raise LinAlgError("the shift is an eigenvalue")
-    below += _negative_pivots(complement, pivots)
+    below += negative_pivots(complement, pivots)
     return ShiftedInverse(below - n - RIGID_MOTIONS, space, inverse, complement, pivots)
 
 
@@ -188,9 +189,3 @@ def _schur_complement(space: TangentSpace, inverse: FloatArray) -> FloatArray:
     strains = np.eye(3 * k) - motions @ motions.T
     result[n:, n:] = strains / _DEFLATION - np.kron(compliance, np.eye(3))
     return result
-
-
-def _negative_pivots(factor: FloatArray, pivots: IntArray) -> int:
-    """Count negative eigenvalues in Bunch and Kaufman's D; 2 x 2 pivots have one each."""
-    single = pivots > 0
-    return int(np.sum(np.diag(factor)[single] < 0) + np.sum(~single) // 2)

@@ -45,9 +45,12 @@ SOLVERS = ("newton", "cg", CONFORMAL, TANGENT_ANGLE)
 
 @click.group(invoke_without_command=True)
 @click.option("--scene", "names", multiple=True, type=click.Choice(list(SCENES)))
+@click.option("--solver", "only", multiple=True, help="By default all, and Evolver.")
 @click.option("--out", default="docs", type=click.Path(path_type=Path, file_okay=False))
 @click.pass_context
-def main(context: click.Context, names: tuple[str, ...], out: Path) -> None:
+def main(
+    context: click.Context, names: tuple[str, ...], only: tuple[str, ...], out: Path
+) -> None:
     """Measure all scenes, or those named; write error_vs_time.csv and .png to OUT."""
     if context.invoked_subcommand is not None:
         return
@@ -55,7 +58,8 @@ def main(context: click.Context, names: tuple[str, ...], out: Path) -> None:
     found: list[Measurement] = []
     with TemporaryDirectory() as folder:
         for name in names or SCENES:
-            found += with_errors(list(measure_scene(SCENES[name], Path(folder))))
+            scene = SCENES[name]
+            found += with_errors(list(measure_scene(scene, Path(folder), only)))
             write_csv(out / "error_vs_time.csv", found)
     draw(out / "error_vs_time.png", found)
     click.echo(markdown(found))
@@ -83,9 +87,15 @@ def point(meshes: tuple[Path, ...], scene: str, solver: str, harmonics: int) -> 
             click.echo(json.dumps(record))
 
 
-def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
-    """Yield every repeat of every point of a scene."""
-    if scene.film == "area" and scene.threshold is None:
+def measure_scene(
+    scene: Scene, folder: Path, only: tuple[str, ...] = ()
+) -> Iterator[Measurement]:
+    """Yield every repeat of every point of a scene, of the solvers that begin so."""
+
+    def wanted(solver: str) -> bool:
+        return not only or solver.startswith(only)
+
+    if wanted(CONFORMAL) and scene.film == "area" and scene.threshold is None:
         yield from measure_mesh_free(scene)
     for kind in kinds(scene):
         coarsest = COARSEST_IN_PLANE if scene.in_plane else COARSEST
@@ -94,7 +104,7 @@ def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
         paths = [folder / f"{number}.npz" for number in range(levels)]
         for path, mesh in zip(paths, meshes, strict=True):
             write_mesh(path, mesh)
-        for solver in solvers(scene):
+        for solver in filter(wanted, solvers(scene)):
             for last, mesh in enumerate(meshes):
                 first = 0 if solver.endswith(COARSE_TO_FINE) else last
                 place = Place(kind, mesh.n_b, mesh.n_v)
@@ -103,7 +113,9 @@ def measure_scene(scene: Scene, folder: Path) -> Iterator[Measurement]:
                 summarise(scene, solver, place, records)
                 if not records or records[-1]["cpu"] > ENOUGH:
                     break
-        with_evolver = scene.film == "area" and scene.threshold is None
+        with_evolver = (
+            wanted("evolver") and scene.film == "area" and scene.threshold is None
+        )
         if with_evolver and find_evolver() is not None:
             yield from measure_evolver(scene, kind, meshes)
 

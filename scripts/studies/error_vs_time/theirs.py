@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -44,7 +44,8 @@ def measure_evolver(scene: Scene, kind: str, meshes: list[Disk]) -> Iterator[Mea
         mesh = meshes[1]
         place = Place(kind, mesh.n_b, mesh.n_v)
         data = film_datafile(mesh, scene.start(mesh), scene.load)
-        run = run_evolver(data, gradient_script(TOO_SLOW), seconds=2 * TOO_SLOW)
+        script = gradient_script(TOO_SLOW)
+        run = _tried(lambda: run_evolver(data, script, seconds=2 * TOO_SLOW), mesh)
         record = as_record(scene, mesh, run, 0, 0.0)
         yield as_measurement(scene, "evolver, gradients", place, record)
         summarise(scene, "evolver, gradients", place, [record])
@@ -55,14 +56,18 @@ def evolver_record(
 ) -> dict[str, Any]:
     """Run Evolver once; its memory is asked for in the first repeat only."""
     x = scene.start(sequence[0])
-    try:
-        run = relax(
-            sequence, x, scene.load, prolong, in_plane=scene.in_plane, weigh=repeat == 0
-        )
-    except ValueError:
-        nan, nowhere = math.nan, np.full((sequence[-1].n_b, 3), math.nan)
-        run = EvolverRun(nan, nowhere, 0, nan, nan, nan, converged=False)
+    how = {"in_plane": scene.in_plane, "weigh": repeat == 0}
+    run = _tried(lambda: relax(sequence, x, scene.load, prolong, **how), sequence[-1])
     return as_record(scene, sequence[-1], run, repeat, reading)
+
+
+def _tried(run: Callable[[], EvolverRun], mesh: Disk) -> EvolverRun:
+    """Return what Evolver came to; one that was stopped, or failed, came to nothing."""
+    try:
+        return run()
+    except ValueError:
+        nan, nowhere = math.nan, np.full((mesh.n_b, 3), math.nan)
+        return EvolverRun(nan, nowhere, 0, nan, nan, nan, converged=False)
 
 
 def as_record(

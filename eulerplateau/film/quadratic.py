@@ -177,11 +177,6 @@ class Stiffness(Term):
         """Return 2 load S (n, n)."""
         return 2 * self.load * self.stiffness
 
-    @property
-    def is_form(self) -> bool:
-        """Return True."""
-        return True
-
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the change of a quadratic form: its gradient half-way times the step."""
         return float(np.vdot(step, self.force(x + 0.5 * step)))

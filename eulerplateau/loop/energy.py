@@ -64,11 +64,6 @@ class LoopEnergy:
     free_motions: Callable[[FloatArray], FloatArray]
 
     @property
-    def is_form(self) -> bool:
-        """Whether it is one quadratic form of all coordinates alike."""
-        return all(term.is_form for term in self.terms.values())
-
-    @property
     def is_handed(self) -> bool:
         """Whether a loop and its mirror image differ in energy."""
         return any(term.is_handed for term in self.terms.values())

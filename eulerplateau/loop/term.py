@@ -41,11 +41,6 @@ class Term(ABC):
         return None
 
     @property
-    def is_form(self) -> bool:
-        """Whether it is one quadratic form of all coordinates alike, wherever the loop."""
-        return False
-
-    @property
     def is_handed(self) -> bool:
         """Whether a loop and its mirror image differ in it."""
         return False

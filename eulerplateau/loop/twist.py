@@ -97,7 +97,7 @@ class Twist(OwnTerm):
 
     def fields(self, x: FloatArray) -> Mapping[str, FloatArray]:
         """Return which way the rod points, at each vertex that of the edge behind it."""
-        return {"director": directors(x, self.link)}
+        return {"director": directors(x, self.link - self.writhe(x))}
 
     def pinched(self, x: FloatArray) -> bool:
         """Return whether strands meet: without thickness no twist is held beyond that."""
@@ -146,11 +146,6 @@ class PlaneTwist(Twist):
     def rounding(self) -> float:
         """Return 0: there is no force."""
         return 0.0
-
-    @property
-    def is_form(self) -> bool:
-        """Return True."""
-        return True
 
     def writhe(self, x: FloatArray) -> float:
         """Return 0."""

@@ -100,7 +100,7 @@ def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
 
 def _marks(row: Row, x_loop: FloatArray) -> FloatArray | None:
     """Return which way a loop points that resists twist, so that one sees the twist."""
-    return None if row.turns is None else directors(x_loop, row.turns)
+    return None if row.twist is None else directors(x_loop, row.twist)
 
 
 _FIELDS = {

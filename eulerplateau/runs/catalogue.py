@@ -16,8 +16,8 @@ from eulerplateau.runs.loads import in_order
 from eulerplateau.runs.recording import Opening, recording
 from eulerplateau.runs.rows import CatalogueRow
 from eulerplateau.runs.spec import RunSpec
+from eulerplateau.runs.start import make_problem
 from eulerplateau.runs.table import table_content
-from eulerplateau.solvers import Problem
 
 
 def run_catalogue(
@@ -40,7 +40,7 @@ def run_catalogue(
         what = "should be absent: catalogues take mirror images for the same"
         raise SpecError("loop.twist_ratio", what)
     disk = make_mesh(spec)
-    problem = Problem(disk, spec.film.model)
+    problem = make_problem(spec, disk)
     settings = spec.catalogue
     plan = Plan(settings.starts, settings.index, settings.distance, settings.seed)
     column = FILM_LOADS[spec.film.model].column

@@ -123,8 +123,8 @@ class Row:
         return float(getattr(self, self.quantity))
 
     @property
-    def turns(self) -> float | None:
-        """Turns the loop was given before it was welded, if it resists twist."""
+    def twist(self) -> float | None:
+        """The loop's twist, in turns, if it resists that."""
         return None
 
     @property
@@ -178,9 +178,9 @@ class _OfTwist:
     twist_moment: float
 
     @property
-    def turns(self) -> float | None:
-        """Turns the loop was given before it was welded."""
-        return self.link
+    def twist(self) -> float | None:
+        """The loop's twist, in turns."""
+        return self.link - self.writhe
 
 
 @dataclass(frozen=True)

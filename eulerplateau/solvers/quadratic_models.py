@@ -81,7 +81,7 @@ def quadratic_models(loop: Loop, energy: LoopEnergy) -> Models:
 
     By the size of its loop, and by whether that resists more than bending.
     """
-    if not energy.is_form:
+    if loop.terms:
         return DenseModels(energy)
     if len(loop.rest_lengths) <= DENSE_LOOP:
         return QuadraticModels(energy, loop)

@@ -195,10 +195,17 @@ def balanced(
     """
     tensions = metric.balance(force)
     left = (force + energy.constraint.force(x, tensions)).reshape(-1, 1)
+    motions = orthonormal(energy, free)
     root = np.repeat(np.sqrt(energy.weights), x.shape[1])[:, None]
-    motions = np.linalg.qr(free * root)[0] * root
     left -= motions @ (motions.T @ (left / root**2))
     return tensions, left.reshape(x.shape)
+
+
+def orthonormal(energy: LoopEnergy, free: FloatArray) -> FloatArray:
+    """Return motions (d n, k) made orthonormal in the norm of the weights, times these."""
+    root = np.repeat(np.sqrt(energy.weights), len(free) // len(energy.weights))[:, None]
+    held: FloatArray = np.linalg.qr(free * root)[0] * root
+    return held
 
 
 def _by_columns(

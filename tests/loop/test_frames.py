@@ -24,7 +24,7 @@ def test_round_the_loop_a_rod_turns_by_its_link(link: float) -> None:
         edges = differences(x)
         lengths = np.linalg.norm(edges, axis=1)
         tangents = edges / lengths[:, None]
-        found = directors(x, link)
+        found = directors(x, link - writhe(x))
         np.testing.assert_allclose((found * tangents).sum(axis=1), 0, atol=1e-12)
         np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, rtol=1e-12)
         # Back to the first edge: carried on, and turned by the twist that is left.
@@ -41,7 +41,7 @@ def test_twist_is_even_along_the_rod() -> None:
     x, link = tangle(60), 1.3
     edges = differences(x)
     lengths = np.linalg.norm(edges, axis=1)
-    tangents, found = edges / lengths[:, None], directors(x, link)
+    tangents, found = edges / lengths[:, None], directors(x, link - writhe(x))
     rate = 2 * np.pi * (link - writhe(x)) / lengths.sum()
     for v in range(59):
         carried = transported(tangents[v : v + 2], found[v])[1]

@@ -110,7 +110,7 @@ def test_shapes_say_which_way_the_rod_points_and_renders_mark_it(
     loop = stored.lines[0][:-1]
     director = stored.point_fields["director"]
     assert np.isnan(np.delete(director, loop, axis=0)).all()
-    expected = directors(stored.points[loop], 0.3)
+    expected = directors(stored.points[loop], 0.3 - run.rows[0].writhe)
     np.testing.assert_allclose(director[loop], expected, atol=1e-12)
     marks = FILM.stage.marks(run.rows[0], stored.points[loop])
     assert marks is not None

@@ -17,6 +17,8 @@ from eulerplateau.film.quadratic import springs
 from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes
 
+ROOT = Path(__file__).parents[2]
+
 
 @pytest.fixture(scope="module")
 def large() -> Disk:
@@ -68,11 +70,11 @@ def test_loop_without_interior_has_its_own_stiffness() -> None:
 
 CHAIN = """
 import json, time
-from pathlib import Path
 import numpy as np
 from eulerplateau.mesh import MeshSpec, generate
 from eulerplateau.solvers import Problem, solve
 from eulerplateau.threads import one_thread
+from scripts.studies.common import peak_memory
 
 polygon = {"kind": "stretched-hexagon", "factor": 2.0}
 mesh = generate(MeshSpec.model_validate({"polygon": polygon, "vertices": VERTICES}))
@@ -87,12 +89,9 @@ with one_thread():
         found = solve(problem, load, x)
         x = found.shape.x
         seconds.append(found.seconds)
-# Not ru_maxrss: a child starts with its parent's, and pytest may hold more.
-rows = Path("/proc/self/status").read_text().splitlines()
-peak = next(row for row in rows if row.startswith("VmHWM"))
 print(json.dumps({
     "seconds": seconds,
-    "gigabytes": int(peak.split()[1]) / 1e6,
+    "gigabytes": peak_memory() * 1024 / 1e6,
     "n_unstable": found.n_unstable,
     "converged": found.converged,
     "residual": found.residual,
@@ -106,7 +105,7 @@ print(json.dumps({
 def test_200_000_vertices_take_seconds_and_less_than_a_gigabyte() -> None:
     script = CHAIN.replace("VERTICES", "200_000")
     run = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
     )
     found = json.loads(run.stdout)
     set_up, _, warm = found["seconds"]

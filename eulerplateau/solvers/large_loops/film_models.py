@@ -28,6 +28,7 @@ from eulerplateau.solvers.second_variation import (
     NewtonStep,
     TangentModel,
     balanced,
+    orthonormal,
     stability,
     tangent_model,
 )
@@ -69,11 +70,8 @@ class FilmModel:
     @cached_property
     def stiffness(self) -> LoopStiffness:
         """What the loop adds to the matrix of its film."""
-        n, weights = len(self.x), self.energy.weights[:, None]
-        motions = self.energy.free_motions(self.x)
-        root = np.sqrt(np.repeat(weights, 3))[:, None]
-        held = np.linalg.qr(motions * root)[0] * root
-        pinned = np.arange(3) * n // 3
+        held = orthonormal(self.energy, self.energy.free_motions(self.x))
+        pinned = np.arange(3) * len(self.x) // 3
         chain = self.loop.chain(self.tensions)
         scale = float(chain[0].max())
         along = scale * self.loop.chords(self.x) / self.loop.rest_lengths[:, None]

@@ -34,4 +34,8 @@ from .turns import (
     edge_turns as edge_turns,
     length_metric as length_metric,
 )
-from .twist import PlaneTwist as PlaneTwist, Twist as Twist
+from .twist import (
+    PlaneTwist as PlaneTwist,
+    Twist as Twist,
+    polygon_writhe as polygon_writhe,
+)

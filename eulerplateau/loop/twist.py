@@ -74,7 +74,7 @@ class Twist(OwnTerm):
         for place, known in self._known:
             if np.array_equal(place, x):
                 return known
-        found = writhe(np.ascontiguousarray(x))
+        found = polygon_writhe(x)
         self._known[:] = [(x.copy(), found), *self._known[: _KEPT - 1]]
         return found
 
@@ -166,6 +166,11 @@ class PlaneTwist(Twist):
     def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
         """Return no change of the force by "link" or "twist_ratio"."""
         return np.zeros_like(x) if parameter in ("link", "twist_ratio") else None
+
+
+def polygon_writhe(x: FloatArray) -> float:
+    """Return the writhe of a closed polygon x (n, 3), by all pairs of its edges."""
+    return float(writhe(np.ascontiguousarray(x)))
 
 
 def _slope(x: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@ from .basis import (
     PLANAR as PLANAR,
     TWISTED as TWISTED,
     Basis as Basis,
+    Curve as Curve,
     Family as Family,
     make_basis as make_basis,
 )
@@ -17,7 +18,21 @@ from .branch import (
     switch as switch,
 )
 from .eight import FlatEight as FlatEight, flat_eight as flat_eight
-from .equilibrium import ConformalFilm as ConformalFilm, correct as correct, disk as disk
+from .energy import (
+    bending_energy as bending_energy,
+    bending_gradient as bending_gradient,
+    bending_hessian as bending_hessian,
+    length_gradient as length_gradient,
+    length_hessian as length_hessian,
+    loop_length as loop_length,
+)
+from .equilibrium import (
+    ConformalFilm as ConformalFilm,
+    correct as correct,
+    disk as disk,
+    gauge_modes as gauge_modes,
+    precondition as precondition,
+)
 from .geometry import (
     Edge as Edge,
     Surface as Surface,
@@ -25,10 +40,16 @@ from .geometry import (
     surface as surface,
     waist as waist,
 )
+from .lobes import BUCKLING as BUCKLING, two_lobes as two_lobes
 from .relaxation import relax as relax
 from .second_variation import (
     Mode as Mode,
     modes as modes,
     morse_index as morse_index,
     spectrum as spectrum,
+)
+from .writhe import (
+    writhe_gradient as writhe_gradient,
+    writhe_hessian as writhe_hessian,
+    writhe_modulo_two as writhe_modulo_two,
 )

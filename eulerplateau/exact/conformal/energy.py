@@ -8,6 +8,7 @@ only where it is conformal (Douglas 1931). Units: length of the loop 1, energies
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 
@@ -43,22 +44,37 @@ class _Invariants:
 def terms(basis: Basis, coefficients: FloatArray) -> Terms:
     """Return the energies of a loop (size,) and their gradients."""
     curve = basis.curve(coefficients)
-    i = _invariants(curve)
     area_gradient = basis.dirichlet @ coefficients
-    by_x1, by_x2 = _bending_slopes(curve, i)
     return Terms(
-        bending=float(basis.weight * (i.g * i.u**-2.5).sum()),
-        length=float(basis.weight * np.sqrt(i.u).sum()),
+        bending=bending_energy(curve),
+        length=loop_length(curve),
         area=float(0.5 * coefficients @ area_gradient),
-        bending_gradient=_assemble(basis, by_x1, 1) + _assemble(basis, by_x2, 2),
+        bending_gradient=bending_gradient(basis, curve),
         length_gradient=length_gradient(basis, curve),
         area_gradient=area_gradient,
     )
 
 
+def bending_energy(curve: Curve) -> float:
+    """Return the bending energy of a loop."""
+    i = _invariants(curve)
+    return float(2 * pi * (i.g * i.u**-2.5).mean())
+
+
+def bending_gradient(basis: Basis, curve: Curve) -> FloatArray:
+    """Return the gradient (size,) of the bending energy, in the columns of `basis`."""
+    by_x1, by_x2 = _bending_slopes(curve, _invariants(curve))
+    return assemble(basis, by_x1, 1) + assemble(basis, by_x2, 2)
+
+
+def loop_length(curve: Curve) -> float:
+    """Return the length of a loop."""
+    return float(2 * pi * np.linalg.norm(curve.x1, axis=1).mean())
+
+
 def length_gradient(basis: Basis, curve: Curve) -> FloatArray:
     """Return the gradient (size,) of the length, in the columns of `basis`."""
-    return _assemble(basis, curve.x1 / np.linalg.norm(curve.x1, axis=1)[:, None], 1)
+    return assemble(basis, curve.x1 / np.linalg.norm(curve.x1, axis=1)[:, None], 1)
 
 
 def bending_hessian(basis: Basis, curve: Curve) -> FloatArray:
@@ -77,7 +93,7 @@ def bending_hessian(basis: Basis, curve: Curve) -> FloatArray:
     pq = u5 * (4 * _outer(p, q) - 2 * _outer(q, p) - 2 * _column(i.c) * eye)
     pq += -5 * u7 * _outer(p, by_q)
     qq = 2 * u5 * (_column(i.u) * eye - _outer(p, p))
-    return _assemble_blocks(basis, pp, pq, qq)
+    return assemble_blocks(basis, pp, pq, qq)
 
 
 def length_hessian(basis: Basis, curve: Curve) -> FloatArray:
@@ -85,7 +101,7 @@ def length_hessian(basis: Basis, curve: Curve) -> FloatArray:
     p = curve.x1
     speed = _column(np.linalg.norm(p, axis=1))
     pp = np.eye(3) / speed - _outer(p, p) / speed**3
-    return _assemble_blocks(basis, pp, None, None)
+    return assemble_blocks(basis, pp, None, None)
 
 
 def _invariants(curve: Curve) -> _Invariants:
@@ -114,12 +130,13 @@ def _outer(a: FloatArray, b: FloatArray) -> FloatArray:
     return a[:, :, None] * b[:, None, :]
 
 
-def _assemble(basis: Basis, slopes: FloatArray, order: int) -> FloatArray:
+def assemble(basis: Basis, slopes: FloatArray, order: int) -> FloatArray:
+    """Return the gradient (size,) of slopes (n, 3) by the loop's derivative of an order."""
     parts = [m[order].T @ slopes[:, axis] for axis, m in enumerate(basis.matrices)]
     return basis.weight * np.concatenate(parts)
 
 
-def _assemble_blocks(
+def assemble_blocks(
     basis: Basis, pp: FloatArray, pq: FloatArray | None, qq: FloatArray | None
 ) -> FloatArray:
     """Return sum B1^T pp B1 + B1^T pq B2 + B2^T pq^T B1 + B2^T qq B2 over the grid."""
@@ -129,9 +146,11 @@ def _assemble_blocks(
             _, a1, a2 = basis.matrices[a]
             _, b1, b2 = basis.matrices[b]
             block = a1.T @ (pp[:, a, b, None] * b1)
-            if pq is not None and qq is not None:
+            if pq is not None:
                 block += a1.T @ (pq[:, a, b, None] * b2)
-                block += a2.T @ (pq[:, b, a, None] * b1 + qq[:, a, b, None] * b2)
+                block += a2.T @ (pq[:, b, a, None] * b1)
+            if qq is not None:
+                block += a2.T @ (qq[:, a, b, None] * b2)
             rows, columns = basis.slices[a], basis.slices[b]
             whole[rows, columns] = basis.weight * block
             whole[columns, rows] = whole[rows, columns].T

@@ -1,0 +1,118 @@
+"""Soap films without a mesh as families of energies, for continuation (continuation.py)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, cast
+
+from numpy.typing import NDArray
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.conformal.terms import (
+    SmoothBending,
+    SmoothFilm,
+    SmoothTwist,
+    Unknowns,
+    WholeLength,
+)
+from eulerplateau.branches.point import BranchPoint
+from eulerplateau.exact.conformal import (
+    Basis,
+    ConformalFilm,
+    bending_energy,
+    gauge_modes,
+)
+from eulerplateau.loop import LoopEnergy, Term
+from eulerplateau.solvers import TangentModel
+
+
+@dataclass(frozen=True)
+class SmoothFamily:
+    """Films of true area bounded by a rod, that differ in one parameter.
+
+    Attributes
+    ----------
+    basis : of the loops, which have its symmetry
+    values : of "load", and where the rod resists twist of "twist_ratio" and "link"
+    parameter : which of them is varied
+    """
+
+    basis: Basis
+    values: Mapping[str, float]
+    parameter: str = "load"
+
+    @cached_property
+    def unknowns(self) -> Unknowns:
+        """What stands for a loop."""
+        return Unknowns.of(self.basis)
+
+    def energy(self, value: float) -> LoopEnergy:
+        """Return the energy at a value of the parameter."""
+        values = {**self.values, self.parameter: value}
+        terms: dict[str, Term] = {
+            "bending": SmoothBending(self.unknowns),
+            "film": SmoothFilm(self.unknowns, values["load"]),
+        }
+        if "twist_ratio" in values:
+            terms["twist"] = SmoothTwist(
+                self.unknowns, values["twist_ratio"], values.get("link", 0.0)
+            )
+        return LoopEnergy(
+            terms=terms,
+            constraint=WholeLength(self.unknowns),
+            # Distances of loops are those of their tangents by the angle.
+            weights=(self.basis.wavenumbers * self.unknowns.scale) ** 2,
+            free_motions=self._free_motions,
+        )
+
+    def with_value(self, parameter: str, value: float) -> SmoothFamily:
+        """Return the family at another value of a parameter that it does not vary."""
+        return replace(self, values={**self.values, parameter: value})
+
+    def positions(self, x: FloatArray) -> FloatArray:
+        """Return the loop (n, 3) at the points of the grid."""
+        return self.unknowns.curve(x).x
+
+    def film(self, x: FloatArray, model: TangentModel) -> ConformalFilm:
+        """Return the film on a loop x, of which `model` is made."""
+        c = self.unknowns.coefficients(x)
+        load, area = self.values["load"], float(0.5 * c @ self.basis.dirichlet @ c)
+        bending = bending_energy(self.basis.curve(c))
+        return ConformalFilm(
+            basis=self.basis,
+            coefficients=c,
+            beta=float(model.tensions[0]),
+            load=load,
+            energy=bending + load * area,
+            area=area,
+            bending=bending,
+            residual=model.residual,
+            corrections=0,
+        )
+
+    def near(self, x: FloatArray) -> SmoothFamily:
+        """Return itself: harmonics are good near every loop."""
+        return self
+
+    def released(self, x: FloatArray) -> SmoothFamily:
+        """Return itself: the film is a minimal surface."""
+        return self
+
+    def kept(self, x: FloatArray) -> Mapping[str, NDArray[Any]]:
+        """Return nothing: the family knows all of itself."""
+        return {}
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> SmoothFamily:
+        """Return itself."""
+        return self
+
+    def _free_motions(self, x: FloatArray) -> FloatArray:
+        u = self.unknowns
+        return gauge_modes(u.basis, u.curve(x)) / u.scale[:, None]
+
+
+def smooth_family(point: BranchPoint) -> SmoothFamily:
+    """Return the family of a point of a branch of films without a mesh."""
+    return cast(SmoothFamily, point.family)

@@ -1,0 +1,69 @@
+"""The same film by more harmonics, or on a grid that resolves a narrower waist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
+from eulerplateau.branches.point import (
+    BranchPoint,
+    Direction,
+    StepControl,
+    correct,
+    point_near,
+)
+from eulerplateau.exact.conformal import Basis, make_basis
+
+# Films are refined until the last tenth of their harmonics is this small.
+TAIL = 1e-10
+_MOST_HARMONICS = 288
+_MOST_CROWDED = 1e-12
+_BETTER = 0.5  # a refinement that does not shrink the tail by this factor is dropped
+
+
+def tail(point: BranchPoint) -> float:
+    """Return the relative error that truncation leaves in the loop's tangent, roughly."""
+    family = smooth_family(point)
+    return family.basis.tail(family.unknowns.coefficients(point.x))
+
+
+def resolved(point: BranchPoint, control: StepControl, within: float = TAIL) -> BranchPoint:
+    """Return the same film with a tail of at most `within`, or the least there is."""
+    while tail(point) > within:
+        finer = next(_finer(point, control), None)
+        if finer is None:
+            return point
+        point = finer
+    return point
+
+
+def in_basis(point: BranchPoint, basis: Basis, control: StepControl) -> BranchPoint | None:
+    """Return the same film in another basis of its symmetry; None if it is not found."""
+    old = smooth_family(point)
+    family = replace(old, basis=basis)
+
+    def moved(x: FloatArray) -> FloatArray:
+        coefficients = basis.transfer(old.basis, old.unknowns.coefficients(x))
+        return family.unknowns.x(coefficients)
+
+    found = point_near(family, moved(point.x), point.value)
+    if found is None:
+        return None
+    way = Direction(moved(point.direction.displacement), point.direction.rate)
+    found = correct(family, found.x, found.value, way, control)
+    return None if found is None else replace(found, arclength=point.arclength)
+
+
+def _finer(point: BranchPoint, control: StepControl) -> Iterator[BranchPoint]:
+    """Yield the film in bases that are better: sharper ones first, which cost nothing."""
+    basis = smooth_family(point).basis
+    more = 8 * round(basis.harmonics / 6)
+    for harmonics, sharper in ((basis.harmonics, 3), (basis.harmonics, 10), (more, 1), (more, 4)):
+        crowding = basis.crowding / sharper
+        if harmonics > _MOST_HARMONICS or crowding < _MOST_CROWDED:
+            continue
+        found = in_basis(point, make_basis(harmonics, basis.family, crowding), control)
+        if found is not None and tail(found) < _BETTER * tail(point):
+            yield found

@@ -1,0 +1,207 @@
+"""The energy of a loop that is a trigonometric polynomial, as a sum of terms.
+
+A loop is the column (size, 1) of its coefficients over 1 / (k sqrt(1 + k^2)): bending grows
+as k^4. Its film is the harmonic extension (exact/conformal). The loop is held to its whole
+length only: pieces of it may slide along it, which changes nothing. Energies are in units
+of alpha / L.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.exact.conformal import (
+    Basis,
+    Curve,
+    bending_gradient,
+    bending_hessian,
+    length_gradient,
+    length_hessian,
+    loop_length,
+    precondition,
+    writhe_gradient,
+    writhe_hessian,
+    writhe_modulo_two,
+)
+from eulerplateau.loop import EdgeTurns, Term, polygon_writhe
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """What stands for a loop of a basis, and back.
+
+    Attributes
+    ----------
+    scale : (size,) float, coefficients per unknown
+    """
+
+    basis: Basis
+    scale: FloatArray
+
+    @classmethod
+    def of(cls, basis: Basis) -> Unknowns:
+        """Return those in which every harmonic is about as stiff as every other."""
+        return cls(basis, precondition(basis))
+
+    def coefficients(self, x: FloatArray) -> FloatArray:
+        """Return the coefficients (size,) of x (size, 1)."""
+        return self.scale * x[:, 0]
+
+    def curve(self, x: FloatArray) -> Curve:
+        """Return the loop at the basis's grid."""
+        return self.basis.curve(self.coefficients(x))
+
+    def x(self, coefficients: FloatArray) -> FloatArray:
+        """Return x (size, 1) of coefficients (size,)."""
+        return (coefficients / self.scale)[:, None]
+
+    def slope(self, gradient: FloatArray) -> FloatArray:
+        """Return the derivative (size, 1) by x of a gradient (size,) by coefficients."""
+        return (self.scale * gradient)[:, None]
+
+    def curvature(self, hessian: FloatArray) -> FloatArray:
+        """Return the second derivative (size, size) by x of that by coefficients."""
+        curved: FloatArray = self.scale[:, None] * hessian * self.scale
+        return curved
+
+
+@dataclass(frozen=True)
+class SmoothBending(Term):
+    """The bending energy, oint kappa^2 ds."""
+
+    unknowns: Unknowns
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return the gradient (size, 1)."""
+        u = self.unknowns
+        return u.slope(bending_gradient(u.basis, u.curve(x)))
+
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return the second derivative (size, size)."""
+        u = self.unknowns
+        return u.curvature(bending_hessian(u.basis, u.curve(x)))
+
+
+@dataclass(frozen=True)
+class SmoothFilm(Term):
+    """The film's energy, load times area: the Dirichlet energy of the extension."""
+
+    unknowns: Unknowns
+    load: float
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return the gradient (size, 1)."""
+        return self.load * self._pull(x)
+
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return the second derivative (size, size)."""
+        return self.load * self.unknowns.curvature(self.unknowns.basis.dirichlet)
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return the derivative of the force by "load"."""
+        return self._pull(x) if parameter == "load" else None
+
+    def _pull(self, x: FloatArray) -> FloatArray:
+        u = self.unknowns
+        return u.slope(u.basis.dirichlet @ u.coefficients(x))
+
+
+@dataclass(frozen=True)
+class SmoothTwist(Term):
+    """The twisting energy of a welded loop: see loop/twist.py, which has its formulas.
+
+    Attributes
+    ----------
+    ratio : float, C / B
+    link : float, Lk, in turns
+    """
+
+    unknowns: Unknowns
+    ratio: float
+    link: float
+
+    @property
+    def gamma(self) -> float:
+        """C / alpha."""
+        return 2 * self.ratio
+
+    @property
+    def is_handed(self) -> bool:
+        """Whether a loop and its mirror image differ in energy: if it was turned."""
+        return self.link != 0.0
+
+    def writhe(self, x: FloatArray) -> float:
+        """Return Wr: its even part by all pairs of edges of a polygon on the loop."""
+        curve = self.unknowns.curve(x)
+        found = writhe_modulo_two(curve)
+        return found + 2 * round((polygon_writhe(curve.x) - found) / 2)
+
+    def moment(self, x: FloatArray) -> float:
+        """Return the twisting moment M."""
+        return self.gamma * 2 * math.pi * (self.link - self.writhe(x))
+
+    def energy(self, x: FloatArray) -> float:
+        """Return the twisting energy."""
+        return 0.5 * self.moment(x) ** 2 / self.gamma
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return -2 pi M dWr/dx (size, 1)."""
+        return -2 * math.pi * self.moment(x) * self.slope(x)
+
+    def hessian(self, x: FloatArray) -> FloatArray:
+        """Return -2 pi M d2Wr/dx2 + 4 pi^2 gamma dWr/dx dWr/dx (size, size)."""
+        u, slope = self.unknowns, self.slope(x)
+        second = u.curvature(writhe_hessian(u.basis, u.curve(x)))
+        stiff: FloatArray = 4 * math.pi**2 * self.gamma * slope @ slope.T
+        return stiff - 2 * math.pi * self.moment(x) * second
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return the derivative of the force by "link" or "twist_ratio"."""
+        if parameter == "link":
+            return -4 * math.pi**2 * self.gamma * self.slope(x)
+        if parameter == "twist_ratio":
+            return self.force(x) / self.ratio
+        return None
+
+    def slope(self, x: FloatArray) -> FloatArray:
+        """Return dWr/dx (size, 1)."""
+        u = self.unknowns
+        return u.slope(writhe_gradient(u.basis, u.curve(x)))
+
+
+@dataclass(frozen=True)
+class WholeLength:
+    """The constraint that a loop is as long as it was: length - 1 = 0."""
+
+    unknowns: Unknowns
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """Return the derivative of the length (1, size)."""
+        u = self.unknowns
+        return u.slope(length_gradient(u.basis, u.curve(x))).T
+
+    def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the multiplier times that (size, 1)."""
+        return self.jacobian(x).T * tensions
+
+    def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the multiplier times the second derivative (size, size)."""
+        u = self.unknowns
+        second = u.curvature(length_hessian(u.basis, u.curve(x)))
+        return float(tensions[0]) * second
+
+    def project(self, x: FloatArray) -> FloatArray | None:
+        """Return the loop of that length and the same shape."""
+        return x / loop_length(self.unknowns.curve(x))
+
+    def turns(self, x: FloatArray) -> EdgeTurns | None:
+        """Return None: there are no edges."""
+        return None
+
+    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+        """Return nothing: there are no edges."""
+        return np.zeros(0)

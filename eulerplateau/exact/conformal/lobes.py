@@ -1,0 +1,50 @@
+"""Planar films of two lobes along x, as conformal films: from the disk's bifurcation."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import ceil, copysign, pi
+
+from eulerplateau.errors import SpecError
+from eulerplateau.exact.checks import finite
+from eulerplateau.exact.conformal.basis import PLANAR, make_basis
+from eulerplateau.exact.conformal.branch import BranchPoint, go_to_load, resolve, switch
+from eulerplateau.exact.conformal.equilibrium import ConformalFilm, disk
+from eulerplateau.exact.conformal.second_variation import modes
+from eulerplateau.exact.planar import thresholds
+
+BUCKLING = 48 * pi**3
+_HARMONICS, _CROWDING = 64, 0.05
+_FIRST, _STEP = 1600.0, 100.0
+_SWITCHED = 0.02
+_TAIL = 1e-11
+
+
+def two_lobes(load: float) -> ConformalFilm:
+    """Return the planar film of two lobes at sigma_hat = load, refined to a tail of 1e-11.
+
+    Raises SpecError unless the load lies between 48 pi^3, where the disk buckles, and
+    2602.98, where the lobes touch.
+    """
+    touching = thresholds(2).point_contact
+    if not BUCKLING < finite("load", load) < touching:
+        problem = f"found {load:g}; lobes exist between {BUCKLING:.6g} and {touching:.6g}"
+        raise SpecError("load", problem)
+    point = _first()
+    way = point if load > point.load else point.reversed()
+    stages = ceil(abs(load - point.load) / _STEP)
+    for stage in range(stages):
+        target = load + (point.load - load) * (1 - 1 / (stages - stage))
+        way = resolve(go_to_load(way, target), _TAIL)
+    return way.film
+
+
+@lru_cache(maxsize=1)
+def _first() -> BranchPoint:
+    """Return the film at the first load."""
+    flat = disk(make_basis(_HARMONICS, PLANAR, _CROWDING), BUCKLING)
+    lowest = modes(flat, PLANAR)[0]
+    # The lobes lie along x: the tip at phi = 0 moves outwards.
+    tip = lowest.basis.curve(lowest.coefficients).x[0, 0]
+    leaving = switch(flat, lowest, copysign(_SWITCHED, tip))
+    return resolve(go_to_load(leaving, _FIRST), _TAIL)

@@ -17,6 +17,7 @@ from eulerplateau.cli.collect import collect
 from eulerplateau.cli.doctor import doctor
 from eulerplateau.cli.ensemble import ensemble
 from eulerplateau.cli.examples import examples
+from eulerplateau.cli.film import film
 from eulerplateau.cli.gallery import gallery
 from eulerplateau.cli.mesh import mesh
 from eulerplateau.cli.planar import planar
@@ -50,6 +51,7 @@ commands.add_command(collect)
 commands.add_command(doctor)
 commands.add_command(ensemble)
 commands.add_command(examples)
+commands.add_command(film)
 commands.add_command(gallery)
 commands.add_command(mesh)
 commands.add_command(planar)

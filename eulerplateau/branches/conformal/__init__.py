@@ -5,6 +5,7 @@
     resolution.py  the same film by more harmonics, or another grid
     by_writhe.py   films of given writhe, from flat ones to pinched ones
     films.py       the film at a load, a twist ratio and a link: what is asked for
+    pinched.py     the flat eight, where they end
 
 What is exact about loops and films is in exact/conformal; continuation is that of meshes.
 """

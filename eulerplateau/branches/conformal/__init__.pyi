@@ -1,6 +1,16 @@
 from .by_writhe import (
     RIGID as RIGID,
     critical_moment as critical_moment,
+    film_of as film_of,
     films_by_writhe as films_by_writhe,
+    stiffness as stiffness,
 )
-from .family import SmoothFamily as SmoothFamily
+from .family import SmoothFamily as SmoothFamily, smooth_family as smooth_family
+from .films import (
+    NoFilmError as NoFilmError,
+    RodFilm as RodFilm,
+    Start as Start,
+    rod_film as rod_film,
+)
+from .pinched import PinchedEight as PinchedEight, pinched_eight as pinched_eight
+from .resolution import in_basis as in_basis, resolved as resolved, tail as tail

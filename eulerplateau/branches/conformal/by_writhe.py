@@ -14,13 +14,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import resolved
-from eulerplateau.branches.conformal.terms import SmoothTwist
 from eulerplateau.branches.continuation import Place, next_place
 from eulerplateau.branches.point import BranchPoint, StepControl, first_point, point_near
 from eulerplateau.exact.conformal import (
@@ -52,7 +50,7 @@ CONTROL = StepControl(
 NARROWEST = 3e-3
 _ROUND_HARMONICS = 32
 # Size of the disk's critical mode, in its tangent, at which films that leave it begin.
-_AWAY = 0.05
+_AWAY = 0.02
 
 
 def films_by_writhe(load: float, narrowest: float = NARROWEST) -> Iterator[BranchPoint]:
@@ -85,20 +83,9 @@ def film_of(point: BranchPoint) -> ConformalFilm:
     return smooth_family(point).film(point.x, point.model)
 
 
-def twist_of(point: BranchPoint) -> SmoothTwist:
-    """Return what the rod's energy has of twist at a point."""
-    return cast(SmoothTwist, point.energy.terms["twist"])
-
-
-def link_of(point: BranchPoint, twist_ratio: float) -> float:
-    """Return the link that holds a film's shape with a rod of another twist ratio."""
-    twist = twist_of(point)
-    return twist.writhe(point.x) + twist.moment(point.x) / (4 * math.pi * twist_ratio)
-
-
 def stiffness(point: BranchPoint) -> float:
     """Return E_0'', the second derivative by the writhe of the energy without twist."""
-    twist, model = twist_of(point), point.model
+    twist, model = smooth_family(point).twist(point.value), point.model
     slope = model.slope(twist.slope(point.x))
     whole = 1 / float(slope @ np.linalg.solve(model.hessian, slope))
     return whole - 4 * math.pi**2 * twist.gamma
@@ -128,12 +115,12 @@ def _beside_disk(load: float) -> BranchPoint:
     flat = family.unknowns.x(disk(basis, load).coefficients)
     held = moment / (4 * math.pi * RIGID)
     model = tangent_model(family.energy(held), flat)
-    mode = model.displacement(model.eigen[1][:, 0])
+    values, vectors = model.eigen
+    mode = model.displacement(vectors[:, np.abs(values).argmin()])
     # The lobes lie along x: the tip at phi = 0 moves outwards.
     mode *= np.copysign(_AWAY, family.positions(mode)[0, 0])
-    beside = family.energy(held).constraint.project(flat + mode)
-    twist = cast(SmoothTwist, family.energy(held).terms["twist"])
-    found = point_near(family, beside, twist.writhe(beside) + held)
+    beside = flat + mode
+    found = point_near(family, beside, family.twist(held).writhe(beside) + held)
     if found is None:
         raise BranchError(f"no film leaves the disk at sigma_hat = {load:g}")
     return first_point(family, found.x, found.value, CONTROL)

@@ -19,13 +19,15 @@ from eulerplateau.branches.conformal.terms import (
 )
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.exact.conformal import (
+    GENERAL,
     Basis,
     ConformalFilm,
     bending_energy,
     gauge_modes,
+    make_basis,
 )
 from eulerplateau.loop import LoopEnergy, Term
-from eulerplateau.solvers import TangentModel
+from eulerplateau.solvers import Stability, TangentModel, stability, tangent_model
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class SmoothFamily:
     Attributes
     ----------
     basis : of the loops, which have its symmetry
-    values : of "load", and where the rod resists twist of "twist_ratio" and "link"
+    values : of "load", of "twist_ratio", with which at 0 twist costs nothing, and "link"
     parameter : which of them is varied
     """
 
@@ -50,15 +52,11 @@ class SmoothFamily:
 
     def energy(self, value: float) -> LoopEnergy:
         """Return the energy at a value of the parameter."""
-        values = {**self.values, self.parameter: value}
         terms: dict[str, Term] = {
             "bending": SmoothBending(self.unknowns),
-            "film": SmoothFilm(self.unknowns, values["load"]),
+            "film": SmoothFilm(self.unknowns, self._values(value)["load"]),
+            "twist": self.twist(value),
         }
-        if "twist_ratio" in values:
-            terms["twist"] = SmoothTwist(
-                self.unknowns, values["twist_ratio"], values.get("link", 0.0)
-            )
         return LoopEnergy(
             terms=terms,
             constraint=WholeLength(self.unknowns),
@@ -66,6 +64,11 @@ class SmoothFamily:
             weights=(self.basis.wavenumbers * self.unknowns.scale) ** 2,
             free_motions=self._free_motions,
         )
+
+    def twist(self, value: float) -> SmoothTwist:
+        """Return the term of the rod's twist at a value of the parameter."""
+        values = self._values(value)
+        return SmoothTwist(self.unknowns, values["twist_ratio"], values["link"])
 
     def with_value(self, parameter: str, value: float) -> SmoothFamily:
         """Return the family at another value of a parameter that it does not vary."""
@@ -107,6 +110,17 @@ class SmoothFamily:
     def restored(self, kept: Mapping[str, NDArray[Any]]) -> SmoothFamily:
         """Return itself."""
         return self
+
+    def in_space(self, point: BranchPoint) -> Stability:
+        """Return the spectrum among all loops, not those of the basis's symmetry alone."""
+        basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
+        family = replace(self, basis=basis)
+        whole = basis.embed(self.basis, self.unknowns.coefficients(point.x))
+        energy = family.energy(point.value)
+        return stability(tangent_model(energy, family.unknowns.x(whole)))
+
+    def _values(self, value: float) -> Mapping[str, float]:
+        return {**self.values, self.parameter: value}
 
     def _free_motions(self, x: FloatArray) -> FloatArray:
         u = self.unknowns

@@ -146,7 +146,7 @@ class SmoothTwist(Term):
 
     def energy(self, x: FloatArray) -> float:
         """Return the twisting energy."""
-        return 0.5 * self.moment(x) ** 2 / self.gamma
+        return 0.5 * self.gamma * (2 * math.pi * (self.link - self.writhe(x))) ** 2
 
     def force(self, x: FloatArray) -> FloatArray:
         """Return -2 pi M dWr/dx (size, 1)."""
@@ -164,7 +164,8 @@ class SmoothTwist(Term):
         if parameter == "link":
             return -4 * math.pi**2 * self.gamma * self.slope(x)
         if parameter == "twist_ratio":
-            return self.force(x) / self.ratio
+            angle = 2 * math.pi * (self.link - self.writhe(x))
+            return -4 * math.pi * angle * self.slope(x)
         return None
 
     def slope(self, x: FloatArray) -> FloatArray:

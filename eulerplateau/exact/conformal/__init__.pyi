@@ -1,4 +1,5 @@
 from .basis import (
+    GENERAL as GENERAL,
     PLANAR as PLANAR,
     TWISTED as TWISTED,
     Basis as Basis,

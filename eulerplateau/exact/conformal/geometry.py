@@ -106,15 +106,16 @@ class Edge:
         """<K> = 2 pi - oint kappa_g ds (Gauss-Bonnet)."""
         return float(2 * pi - self.kappa_g @ self.weights)
 
-    def force_balance(self, load: float, beta: float) -> float:
+    def force_balance(self, load: float, beta: float, moment: float = 0.0) -> float:
         """Return the largest |F' + sigma_hat T| over sigma_hat: 0 in equilibrium.
 
-        F = (beta - 3 kappa^2) t - 2 (kappa n)' is the rod's stress resultant, tension
-        positive; primes are derivatives by arc length.
+        F = (beta - 3 kappa^2) t - 2 (kappa n)' + M kappa b is the rod's stress resultant,
+        tension positive, M its twisting moment; primes are derivatives by arc length.
         """
         kappa2 = _dot(self.curvature, self.curvature)[:, None]
         bent = _derivative(self.curvature) / self.speed[:, None]
         force = (beta - 3 * kappa2) * self.tangent - 2 * bent
+        force += moment * np.cross(self.tangent, self.curvature)
         off = _derivative(force) / self.speed[:, None] + load * self.conormal
         return float(np.linalg.norm(off, axis=1).max() / load)
 

@@ -26,7 +26,7 @@ def two_lobes(load: float) -> ConformalFilm:
     Raises SpecError unless the load lies between 48 pi^3, where the disk buckles, and
     2602.98, where the lobes touch.
     """
-    touching = thresholds(2).point_contact
+    touching = thresholds(2).sigma_contact
     if not BUCKLING < finite("load", load) < touching:
         problem = f"found {load:g}; lobes exist between {BUCKLING:.6g} and {touching:.6g}"
         raise SpecError("load", problem)

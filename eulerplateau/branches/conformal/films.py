@@ -1,0 +1,263 @@
+"""The film of true area at a load, bounded by a rod of given twist ratio and link.
+
+From a flat film or a twisted one of no link it follows the film to the link asked for,
+along the films of given writhe (by_writhe.py), which has no folds; where the link folds on
+that way no film of this branch is left to follow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from itertools import chain, pairwise
+
+from scipy.optimize import brentq
+
+from eulerplateau.branches.conformal.by_writhe import CONTROL, films_by_writhe
+from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
+from eulerplateau.branches.conformal.resolution import TAIL, resolved
+from eulerplateau.branches.point import BranchPoint, point_near
+from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError, SpecError
+from eulerplateau.exact.checks import finite
+from eulerplateau.exact.conformal import (
+    TWISTED,
+    ConformalFilm,
+    disk,
+    edge,
+    make_basis,
+    waist,
+)
+
+_ROUND_HARMONICS = 16
+_FOUND = 1e-13
+
+
+# Neighbours on a branch, and what is looked for between them.
+Neighbours = tuple[BranchPoint, BranchPoint, "_Held"]
+
+
+class NoFilmError(EulerPlateauError):
+    """There is no film of a branch at the link asked for, or none that is resolved."""
+
+    exit_code = NOT_CONVERGED_EXIT_CODE
+
+
+class Start(Enum):
+    """Which film is followed from no link to the one asked for."""
+
+    DISK = "disk"
+    LOBES = "lobes"
+    TWISTED = "twisted"
+    EIGHT = "eight"
+
+
+@dataclass(frozen=True)
+class RodFilm:
+    """A film of true area bounded by a rod; lengths in L, energies in alpha / L.
+
+    Attributes
+    ----------
+    film : its loop, whose energy is that of film and bending
+    energy : film, bending and twist together
+    n_unstable : the Morse index
+    """
+
+    film: ConformalFilm
+    twist_ratio: float
+    link: float
+    energy: float
+    twist_energy: float
+    writhe: float
+    twist_moment: float
+    n_unstable: int
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the harmonics resolve it to ten digits."""
+        return self.film.tail < TAIL
+
+    def numbers(self) -> dict[str, float | int | str]:
+        """Return what is said of it, by names."""
+        frame = edge(self.film)
+        return {
+            "energy": self.energy,
+            "area": self.film.area,
+            "bending": self.film.bending,
+            "twist_energy": self.twist_energy,
+            "writhe": self.writhe,
+            "twist_moment": self.twist_moment,
+            "abs_kappa_n": frame.abs_kappa_n,
+            "total_gauss_curvature": frame.total_gauss_curvature,
+            "waist": waist(self.film),
+            "n_unstable": self.n_unstable,
+            "tail": self.film.tail,
+            "residual": self.film.residual,
+            "status": "converged" if self.resolved else "unresolved",
+        }
+
+
+def rod_film(
+    start: Start, load: float, twist_ratio: float = 0.0, link: float = 0.0
+) -> RodFilm:
+    """Return the film that a start leads to at a load, with a rod turned `link` times.
+
+    Parameters
+    ----------
+    start : Start, but for EIGHT, which has no harmonics
+    load : float, sigma_hat = sigma L^3 / alpha, positive
+    twist_ratio : float
+        C / B; with 0 twist costs nothing, and the link must be 0.
+    link : float
+        Lk, in turns. Lobes of a negative one are the mirror image; a twisted film is
+        right-handed where it starts, with no link.
+
+    Raises
+    ------
+    SpecError : for a load at which there is no such start, or another wrong number
+    NoFilmError : where the branch folds before it comes to the link, or ends pinched
+    """
+    checked(load, twist_ratio, link)
+    values = {"load": load, "twist_ratio": twist_ratio, "link": link}
+    if start is Start.DISK:
+        return _flat_disk(values)
+    if start is Start.LOBES and link < 0:
+        return _mirror_image(rod_film(start, load, twist_ratio, -link))
+    path = films_by_writhe(load)
+    if start is Start.LOBES and link == 0.0:
+        return _with_rod(next(iter(path)), values)
+    between = _between if start is Start.LOBES else _twisted_between
+    return _with_rod(_located(*between(path, _Held(twist_ratio, link))), values)
+
+
+def checked(load: float, twist_ratio: float, link: float) -> None:
+    """Raise SpecError for what is no number, or has no meaning."""
+    if finite("load", load) == 0:
+        raise SpecError("load", "found 0; should be above: no film shapes the loop then")
+    finite("twist_ratio", twist_ratio)
+    if finite("link", abs(link)) != 0 and twist_ratio == 0:
+        raise SpecError("link", "needs a twist ratio: twist that costs nothing is lost")
+
+
+@dataclass(frozen=True)
+class _Held:
+    """What a film is looked for by: what holds it at its writhe.
+
+    4 pi (C/B) Lk = 4 pi (C/B) Wr + M, which is M alone where twist costs nothing.
+    """
+
+    twist_ratio: float
+    link: float
+
+    @property
+    def wanted(self) -> float:
+        """What it is to be."""
+        return 4 * math.pi * self.twist_ratio * self.link
+
+    def __call__(self, point: BranchPoint) -> float:
+        """Return what it is at a film of given writhe."""
+        twist = smooth_family(point).twist(point.value)
+        own = 4 * math.pi * self.twist_ratio * twist.writhe(point.x)
+        return own + twist.moment(point.x)
+
+    def said(self, value: float) -> str:
+        """Return how a message says it."""
+        if self.twist_ratio == 0:
+            return f"the twisting moment {value:.4g}"
+        return f"the link {value / (4 * math.pi * self.twist_ratio):.4g}"
+
+
+def _between(points: Iterable[BranchPoint], held: _Held) -> Neighbours:
+    """Return the neighbours between which a link that changes one way is the one wanted."""
+    value = math.nan
+    for before, after in pairwise(points):
+        past, value = held(before), held(after)
+        if min(past, value) <= held.wanted <= max(past, value):
+            return before, after, held
+        if abs(value - held.wanted) >= abs(past - held.wanted):
+            raise NoFilmError(f"the branch folds near {held.said(past)}")
+    raise NoFilmError(f"the film pinches near {held.said(value)}")
+
+
+def _twisted_between(path: Iterable[BranchPoint], held: _Held) -> Neighbours:
+    """Return the same on the branch of the least twisted film of no link."""
+    points = iter(path)
+    seen, unheld = [next(points)], 0.0
+    for point in points:
+        unheld = held(seen[-1])
+        if unheld * held(point) < 0:
+            break
+        seen.append(point)
+    else:
+        raise NoFilmError("no twisted film has no link: start from disk or lobes")
+    rises = held(point) > unheld
+    if held.wanted == 0.0 or rises == (held.wanted > 0):
+        return _between(chain([seen[-1], point], points), held)
+    return _between(chain([point], reversed(seen)), held)
+
+
+def _located(before: BranchPoint, after: BranchPoint, held: _Held) -> BranchPoint:
+    """Return the film between two neighbours that is held by what is wanted."""
+    family, way = smooth_family(before), before.direction
+
+    def at(value: float) -> BranchPoint:
+        guess = before.x + (value - before.value) / way.rate * way.displacement
+        found = point_near(family, guess, value)
+        if found is None:
+            raise NoFilmError(f"Newton's method fails near the writhe {value:.4g}")
+        return found
+
+    def off(value: float) -> float:
+        return held(at(value)) - held.wanted
+
+    return at(float(brentq(off, before.value, after.value, xtol=_FOUND)))
+
+
+def _with_rod(point: BranchPoint, values: Mapping[str, float]) -> RodFilm:
+    """Return the film next to a point, with its rod's own twist ratio and link."""
+    found = point_near(SmoothFamily(smooth_family(point).basis, values), point.x, values["load"])
+    if found is None:
+        raise NoFilmError("Newton's method fails at the link asked for: the branch folds")
+    return _measured(resolved(found, CONTROL))
+
+
+def _flat_disk(values: Mapping[str, float]) -> RodFilm:
+    """Return the disk, which is in equilibrium at every link."""
+    turns = math.ceil(values["twist_ratio"] * abs(values["link"]))
+    basis = make_basis(_ROUND_HARMONICS + 2 * turns, TWISTED)
+    family = SmoothFamily(basis, values)
+    flat = family.unknowns.x(disk(basis, values["load"]).coefficients)
+    found = point_near(family, flat, values["load"])
+    if found is None:
+        raise NoFilmError("Newton's method fails at the disk")
+    return _measured(found)
+
+
+def _measured(point: BranchPoint) -> RodFilm:
+    """Return the film of a point, with all its numbers."""
+    family = smooth_family(point)
+    film, twist = family.film(point.x, point.model), family.twist(point.value)
+    return RodFilm(
+        film=film,
+        twist_ratio=twist.ratio,
+        link=twist.link,
+        energy=film.energy + twist.energy(point.x),
+        twist_energy=twist.energy(point.x),
+        writhe=twist.writhe(point.x),
+        twist_moment=twist.moment(point.x),
+        n_unstable=family.in_space(point).n_unstable,
+    )
+
+
+def _mirror_image(found: RodFilm) -> RodFilm:
+    """Return the mirror image in the plane z = 0, of a rod turned the other way."""
+    basis, mirrored = found.film.basis, found.film.coefficients.copy()
+    mirrored[basis.slices[2]] *= -1
+    return replace(
+        found,
+        film=replace(found.film, coefficients=mirrored),
+        link=-found.link,
+        writhe=-found.writhe,
+        twist_moment=-found.twist_moment,
+    )

@@ -1,3 +1,4 @@
+from .checks import finite as finite
 from .conformal.equilibrium import ConformalFilm as ConformalFilm
 from .conformal.relaxation import relax as relax
 from .planar.film import (

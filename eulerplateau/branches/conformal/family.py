@@ -76,11 +76,11 @@ class SmoothFamily:
 
     def positions(self, x: FloatArray) -> FloatArray:
         """Return the loop (n, 3) at the points of the grid."""
-        return self.unknowns.curve(x).x
+        return self.unknowns.loop(x).curve.x
 
     def film(self, x: FloatArray, model: TangentModel) -> ConformalFilm:
         """Return the film on a loop x, of which `model` is made."""
-        c = self.unknowns.coefficients(x)
+        c = self.unknowns.loop(x).coefficients
         load, area = self.values["load"], float(0.5 * c @ self.basis.dirichlet @ c)
         bending = bending_energy(self.basis.curve(c))
         return ConformalFilm(
@@ -115,7 +115,7 @@ class SmoothFamily:
         """Return the spectrum among all loops, not those of the basis's symmetry alone."""
         basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
         family = replace(self, basis=basis)
-        whole = basis.embed(self.basis, self.unknowns.coefficients(point.x))
+        whole = basis.embed(self.basis, self.unknowns.loop(point.x).coefficients)
         energy = family.energy(point.value)
         return stability(tangent_model(energy, family.unknowns.x(whole)))
 
@@ -124,7 +124,7 @@ class SmoothFamily:
 
     def _free_motions(self, x: FloatArray) -> FloatArray:
         u = self.unknowns
-        return gauge_modes(u.basis, u.curve(x)) / u.scale[:, None]
+        return gauge_modes(u.basis, u.loop(x).curve) / u.scale[:, None]
 
 
 def smooth_family(point: BranchPoint) -> SmoothFamily:

@@ -20,8 +20,9 @@ from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
 from eulerplateau.branches.point import BranchPoint, point_near
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError, SpecError
-from eulerplateau.exact.checks import finite
+from eulerplateau.exact import finite
 from eulerplateau.exact.conformal import (
+    BUCKLING,
     TWISTED,
     ConformalFilm,
     disk,
@@ -124,6 +125,11 @@ def rod_film(
         return _flat_disk(values)
     if start is Start.LOBES and link < 0:
         return _mirror_image(rod_film(start, load, twist_ratio, -link))
+    if start is Start.LOBES and load <= BUCKLING:
+        problem = (
+            f"found {load:g}; lobes exist above {BUCKLING:.6g}, where the disk buckles"
+        )
+        raise SpecError("load", problem)
     path = films_by_writhe(load)
     if start is Start.LOBES and link == 0.0:
         return _with_rod(next(iter(path)), values)
@@ -216,7 +222,9 @@ def _located(before: BranchPoint, after: BranchPoint, held: _Held) -> BranchPoin
 
 def _with_rod(point: BranchPoint, values: Mapping[str, float]) -> RodFilm:
     """Return the film next to a point, with its rod's own twist ratio and link."""
-    found = point_near(SmoothFamily(smooth_family(point).basis, values), point.x, values["load"])
+    found = point_near(
+        SmoothFamily(smooth_family(point).basis, values), point.x, values["load"]
+    )
     if found is None:
         raise NoFilmError("Newton's method fails at the link asked for: the branch folds")
     return _measured(resolved(found, CONTROL))

@@ -1,10 +1,10 @@
 """The flat figure eight of a rod that resists twist, pinched where it crosses itself.
 
-It is the end of the films of given writhe: as the waist closes the writhe tends to one turn,
-that of a flat crossing, and the moment that holds it to zero, E_0'(1) = 0. So the energy of
-a rod of link Lk rises there with the writhe by -2 pi M, M = gamma 2 pi (Lk - 1): turned by
-less than a turn the rod opens its pinch, turned by more it presses its strands together,
-and without thickness they would pass through each other.
+It is the end of the films of given writhe: as the waist closes the writhe tends to one
+turn, that of a flat crossing, and the moment that holds it to zero, E_0'(1) = 0. So the
+energy of a rod of link Lk rises there with the writhe by -2 pi M, M = gamma 2 pi (Lk - 1):
+turned by less than a turn the rod opens its pinch; turned by more it presses its strands
+together, and without thickness they would pass through each other.
 """
 
 from __future__ import annotations

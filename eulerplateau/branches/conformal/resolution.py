@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
+from eulerplateau.branches.conformal.family import smooth_family
 from eulerplateau.branches.point import (
     BranchPoint,
     Direction,
@@ -26,7 +26,7 @@ _BETTER = 0.5  # a refinement that does not shrink the tail by this factor is dr
 def tail(point: BranchPoint) -> float:
     """Return the relative error that truncation leaves in the loop's tangent, roughly."""
     family = smooth_family(point)
-    return family.basis.tail(family.unknowns.coefficients(point.x))
+    return family.basis.tail(family.unknowns.loop(point.x).coefficients)
 
 
 def resolved(point: BranchPoint, control: StepControl, within: float = TAIL) -> BranchPoint:
@@ -45,7 +45,7 @@ def in_basis(point: BranchPoint, basis: Basis, control: StepControl) -> BranchPo
     family = replace(old, basis=basis)
 
     def moved(x: FloatArray) -> FloatArray:
-        coefficients = basis.transfer(old.basis, old.unknowns.coefficients(x))
+        coefficients = basis.transfer(old.basis, old.unknowns.loop(x).coefficients)
         return family.unknowns.x(coefficients)
 
     found = point_near(family, moved(point.x), point.value)
@@ -60,7 +60,12 @@ def _finer(point: BranchPoint, control: StepControl) -> Iterator[BranchPoint]:
     """Yield the film in bases that are better: sharper ones first, which cost nothing."""
     basis = smooth_family(point).basis
     more = 8 * round(basis.harmonics / 6)
-    for harmonics, sharper in ((basis.harmonics, 3), (basis.harmonics, 10), (more, 1), (more, 4)):
+    for harmonics, sharper in (
+        (basis.harmonics, 3),
+        (basis.harmonics, 10),
+        (more, 1),
+        (more, 4),
+    ):
         crowding = basis.crowding / sharper
         if harmonics > _MOST_HARMONICS or crowding < _MOST_CROWDED:
             continue

@@ -9,7 +9,8 @@ of alpha / L.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -29,6 +30,28 @@ from eulerplateau.exact.conformal import (
 )
 from eulerplateau.loop import EdgeTurns, Term, polygon_writhe
 
+# Loops that are kept: where a step begins, and where it may end.
+_KEPT = 4
+
+
+@dataclass(frozen=True)
+class SmoothLoop:
+    """A loop, and what several terms ask of it."""
+
+    basis: Basis
+    coefficients: FloatArray
+
+    @cached_property
+    def curve(self) -> Curve:
+        """The loop at the basis's grid."""
+        return self.basis.curve(self.coefficients)
+
+    @cached_property
+    def writhe(self) -> float:
+        """Wr: its even part by all pairs of edges of a polygon on the loop."""
+        found = writhe_modulo_two(self.curve)
+        return found + 2 * round((polygon_writhe(self.curve.x) - found) / 2)
+
 
 @dataclass(frozen=True)
 class Unknowns:
@@ -41,19 +64,21 @@ class Unknowns:
 
     basis: Basis
     scale: FloatArray
+    _known: list[tuple[FloatArray, SmoothLoop]] = field(default_factory=list, repr=False)
 
     @classmethod
     def of(cls, basis: Basis) -> Unknowns:
         """Return those in which every harmonic is about as stiff as every other."""
         return cls(basis, precondition(basis))
 
-    def coefficients(self, x: FloatArray) -> FloatArray:
-        """Return the coefficients (size,) of x (size, 1)."""
-        return self.scale * x[:, 0]
-
-    def curve(self, x: FloatArray) -> Curve:
-        """Return the loop at the basis's grid."""
-        return self.basis.curve(self.coefficients(x))
+    def loop(self, x: FloatArray) -> SmoothLoop:
+        """Return the loop of x (size, 1)."""
+        for place, known in self._known:
+            if np.array_equal(place, x):
+                return known
+        found = SmoothLoop(self.basis, self.scale * x[:, 0])
+        self._known[:] = [(x.copy(), found), *self._known[: _KEPT - 1]]
+        return found
 
     def x(self, coefficients: FloatArray) -> FloatArray:
         """Return x (size, 1) of coefficients (size,)."""
@@ -78,12 +103,12 @@ class SmoothBending(Term):
     def force(self, x: FloatArray) -> FloatArray:
         """Return the gradient (size, 1)."""
         u = self.unknowns
-        return u.slope(bending_gradient(u.basis, u.curve(x)))
+        return u.slope(bending_gradient(u.basis, u.loop(x).curve))
 
     def hessian(self, x: FloatArray) -> FloatArray:
         """Return the second derivative (size, size)."""
         u = self.unknowns
-        return u.curvature(bending_hessian(u.basis, u.curve(x)))
+        return u.curvature(bending_hessian(u.basis, u.loop(x).curve))
 
 
 @dataclass(frozen=True)
@@ -107,7 +132,7 @@ class SmoothFilm(Term):
 
     def _pull(self, x: FloatArray) -> FloatArray:
         u = self.unknowns
-        return u.slope(u.basis.dirichlet @ u.coefficients(x))
+        return u.slope(u.basis.dirichlet @ u.loop(x).coefficients)
 
 
 @dataclass(frozen=True)
@@ -135,10 +160,8 @@ class SmoothTwist(Term):
         return self.link != 0.0
 
     def writhe(self, x: FloatArray) -> float:
-        """Return Wr: its even part by all pairs of edges of a polygon on the loop."""
-        curve = self.unknowns.curve(x)
-        found = writhe_modulo_two(curve)
-        return found + 2 * round((polygon_writhe(curve.x) - found) / 2)
+        """Return Wr."""
+        return self.unknowns.loop(x).writhe
 
     def moment(self, x: FloatArray) -> float:
         """Return the twisting moment M."""
@@ -155,7 +178,7 @@ class SmoothTwist(Term):
     def hessian(self, x: FloatArray) -> FloatArray:
         """Return -2 pi M d2Wr/dx2 + 4 pi^2 gamma dWr/dx dWr/dx (size, size)."""
         u, slope = self.unknowns, self.slope(x)
-        second = u.curvature(writhe_hessian(u.basis, u.curve(x)))
+        second = u.curvature(writhe_hessian(u.basis, u.loop(x).curve))
         stiff: FloatArray = 4 * math.pi**2 * self.gamma * slope @ slope.T
         return stiff - 2 * math.pi * self.moment(x) * second
 
@@ -171,7 +194,7 @@ class SmoothTwist(Term):
     def slope(self, x: FloatArray) -> FloatArray:
         """Return dWr/dx (size, 1)."""
         u = self.unknowns
-        return u.slope(writhe_gradient(u.basis, u.curve(x)))
+        return u.slope(writhe_gradient(u.basis, u.loop(x).curve))
 
 
 @dataclass(frozen=True)
@@ -183,7 +206,7 @@ class WholeLength:
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Return the derivative of the length (1, size)."""
         u = self.unknowns
-        return u.slope(length_gradient(u.basis, u.curve(x))).T
+        return u.slope(length_gradient(u.basis, u.loop(x).curve)).T
 
     def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the multiplier times that (size, 1)."""
@@ -192,12 +215,12 @@ class WholeLength:
     def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the multiplier times the second derivative (size, size)."""
         u = self.unknowns
-        second = u.curvature(length_hessian(u.basis, u.curve(x)))
+        second = u.curvature(length_hessian(u.basis, u.loop(x).curve))
         return float(tensions[0]) * second
 
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return the loop of that length and the same shape."""
-        return x / loop_length(self.unknowns.curve(x))
+        return x / loop_length(self.unknowns.loop(x).curve)
 
     def turns(self, x: FloatArray) -> EdgeTurns | None:
         """Return None: there are no edges."""

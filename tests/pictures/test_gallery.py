@@ -21,7 +21,7 @@ from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.record import read_run
-from eulerplateau.runs.rows import BranchRow, Row, columns
+from eulerplateau.runs.rows import BranchRow, Row, TwistRow, columns
 from tests.helpers.command import run_here
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
 from tests.runs.test_output import ROW
@@ -115,6 +115,36 @@ def test_page_holds_every_row_and_every_shape_to_16_bits(
                 assert cell == pytest.approx(value, rel=1e-9)
             else:
                 assert cell == (value.value if name == "status" else value)
+
+
+def test_a_loop_that_resists_twist_is_marked_and_the_mark_winds_as_it_is_twisted(
+    tmp_path: Path, mesh: Disk
+) -> None:
+    """A flat ring has no writhe: what was turned winds round it, from weld to weld."""
+    turns, own = 1.3, {"twist_energy": 0.0, "writhe": 0.0, "twist_moment": 0.0}
+    summary = {"spec": {"loop": {"twist_ratio": 0.75}}}
+    ring = 0.15 * mesh.x / np.hypot(*mesh.x.T[:2]).max()
+    with RunFolder.create(tmp_path / "rod", summary, "sweep", TwistRow) as folder:
+        for step, link in enumerate([0.0, turns]):
+            row = TwistRow(**asdict(replace(ROW, step=step)), link=link, **own)
+            folder.record(row, mesh, ring @ rotation())
+    data = Page(page(collect([tmp_path / "rod", sweep(tmp_path / "bare", mesh, [1.0])])))
+    shown, bare = data.data["runs"]
+    assert bare["marks"] is None
+    x = data.data["unit"] * unpacked(shown["shapes"], "<i2").reshape(2, mesh.n_v, 3)
+    marks = unpacked(shown["marks"], "i1").reshape(2, mesh.n_b, 3) / 127
+    assert np.abs(np.linalg.norm(marks, axis=-1) - 1).max() < 0.01
+    for loop, across, link in zip(x[:, mesh.loop], marks, (0.0, turns), strict=True):
+        edges = np.roll(loop, -1, axis=0) - loop
+        edges /= np.linalg.norm(edges, axis=1)[:, None]
+        # Straight across the wire, on the shape as the page has turned it.
+        assert np.abs((edges * across).sum(axis=1)).max() < 0.01
+        normal = np.cross(loop, np.roll(loop, -1, axis=0)).sum(axis=0)
+        normal /= np.linalg.norm(normal)
+        beside = np.cross(edges, normal)
+        angle = np.arctan2((across * beside).sum(axis=1), across @ normal)
+        wound = np.unwrap(angle)[-1] - np.unwrap(angle)[0]
+        assert wound == pytest.approx(2 * np.pi * link * (1 - 1 / mesh.n_b), abs=0.05)
 
 
 def test_columns_the_page_shows_are_those_of_the_table() -> None:

@@ -184,6 +184,10 @@ def blue(image: Image) -> Any:
     return image[..., 2] > image[..., 0] + 0.15
 
 
+def dark(image: Image) -> Any:
+    return image.max(axis=2) < 0.3
+
+
 def part_of(mask: Any) -> float:
     return float(mask.mean())
 
@@ -265,6 +269,29 @@ def test_several_runs_are_one_diagram(
     started.press(UP)
     assert started.evaluate("document.body.dataset.run") == "sweep"
     started.screenshot(ARTEFACTS / "gallery-runs.png")
+    assert started.complaints() == []
+
+
+def test_the_stripe_on_a_twisted_loop_is_seen_and_no_other_loop_has_one(
+    started: Browser, tmp_path: Path
+) -> None:
+    rod = {"loop.twist_ratio": 0.75, "loop.link": 1.3}
+    for name, said in (("rod", rod), ("bare", {})):
+        spec = load_run(ROOT / "runs" / "elongated.toml", {**said, "sweep.loads": [300.0]})
+        run_sweep(spec, tmp_path / name)
+    content = page(collect([tmp_path / "rod", tmp_path / "bare"]))
+    (tmp_path / "gallery.html").write_bytes(content)
+    started.open(tmp_path / "gallery.html")
+    striped = started.picture("film")
+    started.screenshot(ARTEFACTS / "gallery-twisted.png")
+    started.evaluate("(film.stripe.visible = false, film.draw())")
+    assert part_of(dark(started.picture("film"))) > 1.1 * part_of(dark(striped))
+    started.press(DOWN)
+    assert started.evaluate("document.body.dataset.run") == "bare"
+    assert not started.evaluate("film.stripe.visible")
+    started.press(UP)
+    assert started.evaluate("film.stripe.visible")
+    assert part_changed(striped, started.picture("film")) < 0.001
     assert started.complaints() == []
 
 

@@ -18,6 +18,7 @@ function readGallery(element) {
     mesh: meshes[run.mesh],
     tilings: run.tilings.map(([first, text]) => [first, decode(text, Uint32Array)]),
     shapes: decode(run.shapes, Int16Array),
+    marks: run.marks && decode(run.marks, Int8Array),
     rows: run.rows.map((cells) =>
       Object.fromEntries(cells.map((cell, column) => [gallery.columns[column], cell]))),
   }));
@@ -29,6 +30,13 @@ function positions(gallery, run, place) {
   const size = 3 * run.mesh.vertices;
   const whole = run.shapes.subarray(place * size, (place + 1) * size);
   return Float32Array.from(whole, (value) => value * gallery.unit);
+}
+
+// Directions across the loop's edges of one shape in which its wire is marked, (3 n_b)
+// numbers up to 127; null in a run without marks.
+function marks(run, place) {
+  const size = 3 * run.mesh.loop.length;
+  return run.marks && run.marks.subarray(place * size, (place + 1) * size);
 }
 
 // Triangles of one shape: the mesh's, but where a film's mesh was repaired.

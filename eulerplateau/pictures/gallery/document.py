@@ -19,6 +19,8 @@ from eulerplateau.runs import Series
 
 # Beyond what is drawn, and at most 1e-5 L away from it: 16 bits for a loop of length 1.
 _INT16 = 32767
+# A mark's direction, to half a degree round the wire.
+_INT8 = 127
 _DIGITS = 10
 _SCRIPTS = ("quantities", "data", "film", "diagram", "main")
 
@@ -87,6 +89,7 @@ def _run(shown: Exhibit, unit: float) -> dict[str, Any]:
             [first, _base64(tiles.astype("<u4"))] for first, tiles in shapes.tilings[1:]
         ],
         "shapes": _base64(np.rint(shown.x / unit).astype("<i2")),
+        "marks": _marks(shown),
         "series": [_series(series) for series in run.series],
         "special": run.special,
         "rows": [
@@ -94,6 +97,18 @@ def _run(shown: Exhibit, unit: float) -> dict[str, Any]:
             for row in run.rows
         ],
     }
+
+
+def _marks(shown: Exhibit) -> str | None:
+    """Return which way the wire is marked on the edges of every shape's loop, 8 bits each.
+
+    None of a run without marks. The positions they belong to are those on the page, turned.
+    """
+    marks = pictures_of(shown.run.kind).stage.marks
+    loop = shown.shapes.loop
+    across = [marks(row, x[loop]) for row, x in zip(shown.run.rows, shown.x, strict=True)]
+    drawn = [way for way in across if way is not None]
+    return _base64(np.rint(_INT8 * np.stack(drawn)).astype("i1")) if drawn else None
 
 
 def _series(series: Series) -> dict[str, Any]:

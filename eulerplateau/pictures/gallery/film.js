@@ -1,9 +1,11 @@
-// The film in 3D: blue in front, orange behind, its loop a tube; one scale for all shapes.
+// The film in 3D: blue in front, orange behind, its loop a tube, on one that resists twist a
+// stripe; one scale for all shapes.
 
 class Film {
   static FRONT = "#6FB1DE";
   static BACK = "#F0A35E";
   static LOOP = "#2B2B2B";
+  static STRIPE = "#F7F7F7";
   static TUBE = 0.0035; // in loops' lengths
 
   // `eye` points from the film to the camera; at first it sees `halfSize` [across, up], in
@@ -31,7 +33,9 @@ class Film {
     }
     this.tube = new L.Mesh(
       new L.BufferGeometry(), new L.MeshPhongMaterial({ color: Film.LOOP }));
-    this.scene.add(...this.parts, this.tube);
+    this.stripe = new L.Mesh(
+      new L.BufferGeometry(), new L.MeshPhongMaterial({ color: Film.STRIPE }));
+    this.scene.add(...this.parts, this.tube, this.stripe);
     this.camera.position.fromArray(eye).setLength(size); // beyond any film
     this.controls = new L.OrbitControls(this.camera, canvas);
     this.controls.minZoom = 0.5;
@@ -42,7 +46,7 @@ class Film {
     new ResizeObserver(() => this.fit()).observe(canvas.parentElement);
   }
 
-  show(mesh, triangles, x) {
+  show(mesh, triangles, x, marks) {
     const L = Libraries;
     if (triangles !== this.triangles) {
       this.triangles = triangles;
@@ -59,7 +63,24 @@ class Film {
     const wire = new L.CatmullRomCurve3(corners, true);
     this.tube.geometry.dispose();
     this.tube.geometry = new L.TubeGeometry(wire, 2 * corners.length, this.tubeRadius, 12, true);
+    this.mark(corners, marks);
     this.draw();
+  }
+
+  // A stripe along the tube where directions across its edges point; open, as the ends of a
+  // rod that was turned need not meet where it was welded.
+  mark(corners, marks) {
+    const L = Libraries;
+    this.stripe.visible = marks !== null;
+    if (!marks) return;
+    const points = corners.map((corner, edge) => {
+      const across = new L.Vector3().fromArray(marks, 3 * edge).setLength(0.8 * this.tubeRadius);
+      const next = corners[(edge + 1) % corners.length];
+      return corner.clone().lerp(next, 0.5).add(across);
+    });
+    const line = new L.CatmullRomCurve3(points);
+    this.stripe.geometry.dispose();
+    this.stripe.geometry = new L.TubeGeometry(line, 4 * points.length, 0.4 * this.tubeRadius, 8);
   }
 
   firstView() {

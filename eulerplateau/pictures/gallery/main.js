@@ -17,7 +17,8 @@ function show(curve, place) {
     run: curve.run.name, series: curve.name, step: row.step,
   });
   film?.show(
-    curve.run.mesh, triangles(curve.run, place), positions(gallery, curve.run, place));
+    curve.run.mesh, triangles(curve.run, place), positions(gallery, curve.run, place),
+    marks(curve.run, place));
   diagram.mark(row);
   find("headline").textContent = `${curve.name}: ${load.symbol} = ${text(row[load.key], 7)}`;
   find("place").max = curve.places.length - 1;

@@ -1,7 +1,7 @@
 """Branches of equilibria, stable or not, through folds and bifurcations.
 
     films.py        branches of a film: `explore`, and how one starts from a shape
-    film_family.py  a film under one load after another, near one shape after another
+    film_family.py  a film at one load, or link, after another, near one shape
     exploration.py  the order in which all branches that hang together are followed
     continuation.py one branch, point by point (point.py); the step's length
     between.py      where between two points something vanishes

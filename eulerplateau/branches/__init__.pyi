@@ -14,6 +14,7 @@ from .films import (
     explore as explore,
     film_point as film_point,
     first_equilibrium as first_equilibrium,
+    where_from as where_from,
 )
 from .point import (
     BranchPoint as BranchPoint,

@@ -92,7 +92,8 @@ class Interval:
         doubt = abs(point.stability.eigenvalues[index]) + point.stability.error_bound
         arclength = doubt * self.length / max(self.rise(index), doubt)
         # At a fold the parameter is stationary, elsewhere it changes with the arclength.
-        return float(arclength * abs(point.direction.rate) + _ROUNDING * point.value)
+        moved = arclength * abs(point.direction.rate)
+        return float(moved + _ROUNDING * self.control.scale(point.value))
 
 
 def parameter_rate(level: float, point: BranchPoint) -> float:

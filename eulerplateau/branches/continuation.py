@@ -91,7 +91,7 @@ def advance(point: BranchPoint, step: float, control: StepControl) -> BranchPoin
     guess = point.x + step * point.direction.displacement
     value = point.value + step * point.direction.rate
     after = correct(point.family, guess, value, point.direction, control)
-    if after is None:
+    if after is None or not point.energy.reaches(point.x, after.x):
         return None
     # A step that turns sharply has landed on a branch that crosses this one.
     before = _kept(point, after, control)

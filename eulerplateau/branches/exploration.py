@@ -113,7 +113,7 @@ def _stepped(
         return progress.ended()
     visited = partial(DiagramPoint, progress.branch, progress.origin)
     for special in special_points(before, after.point, control):
-        number = _number(special, progress.met)
+        number = _number(special, progress.met, control)
         known = number < len(progress.met)
         if not known:
             progress = _with(special, progress, control, limits)
@@ -140,7 +140,7 @@ def _with(
 ) -> Progress:
     """Return the progress with a special point that is new, and the branches from it."""
     number, leads = len(progress.met), list(progress.leads)
-    met = *progress.met, (special.point.x, special.point.value)
+    met = *progress.met, (_loop(special), special.point.value)
     order = progress.order
     if len(met) <= limits.special_points:
         for first in branches_from(special, control):
@@ -150,10 +150,17 @@ def _with(
     return replace(progress, met=met, leads=tuple(leads), order=order)
 
 
-def _number(special: SpecialPoint, met: Sequence[tuple[FloatArray, float]]) -> int:
+def _number(
+    special: SpecialPoint, met: Sequence[tuple[FloatArray, float]], control: StepControl
+) -> int:
     """Return the number of a special point, the next free one if it is new."""
     for number, (x, value) in enumerate(met):
-        near = abs(special.point.value / value - 1) < _SAME_VALUE
-        if near and loop_distance(special.point.x, x) < _SAME_LOOP:
+        near = abs(special.point.value - value) < _SAME_VALUE * control.scale(value)
+        if near and loop_distance(_loop(special), x) < _SAME_LOOP:
             return number
     return len(met)
+
+
+def _loop(special: SpecialPoint) -> FloatArray:
+    """Return the loop (n, d) at a special point, as it lies in space."""
+    return special.point.family.positions(special.point.x)

@@ -15,7 +15,7 @@ class Family(Protocol):
     """Energies of a loop that differ in one parameter, good near one shape.
 
     A soap film is known near one shape at a time, so a family is made anew where the film
-    has turned too far.
+    has turned too far. What x is, vertices (n, d) or any other unknowns, only it knows.
     """
 
     @property
@@ -24,6 +24,15 @@ class Family(Protocol):
 
     def energy(self, value: float) -> LoopEnergy:
         """Return the energy at a value of the parameter."""
+
+    def with_value(self, parameter: str, value: float) -> Family:
+        """Return the family at another value of a parameter that it does not vary."""
+
+    def positions(self, x: FloatArray) -> FloatArray:
+        """Return the loop in space (k, 3), or in a plane (k, 2), that x (n, d) stands for.
+
+        It is linear in x, so that displacements are taken to displacements.
+        """
 
     def near(self, x: FloatArray) -> Family:
         """Return the family made anew at a loop x (n, d), or itself."""

@@ -1,4 +1,4 @@
-"""Films as families of energies: one load after another, near one shape after another."""
+"""Films as families of energies: one load, or link, after another, near one shape."""
 
 from __future__ import annotations
 
@@ -20,15 +20,36 @@ from eulerplateau.solvers import Equilibrium, Problem, Status
 
 @dataclass(frozen=True)
 class FilmFamily:
-    """A film on its loop under one load after another, good near one shape."""
+    """A film on its loop at one value of a parameter after another, good near one shape.
+
+    Attributes
+    ----------
+    parameter : "load", or one of the loop's own, as "link"
+    load : float, at which that is varied; of no account where it is the load
+    """
 
     problem: Problem
     film: FilmOfLoop
     parameter: str = "load"
+    load: float = 0.0
+
+    def at(self, value: float) -> tuple[Problem, float]:
+        """Return the problem and its load at a value of the parameter."""
+        return self.problem.at(self.parameter, value, self.load)
 
     def energy(self, value: float) -> LoopEnergy:
-        """Return the energy at a load."""
-        return self.film.energy(self.problem.loop, value)
+        """Return the energy at a value of the parameter."""
+        problem, load = self.at(value)
+        return self.film.energy(problem.loop, load)
+
+    def with_value(self, parameter: str, value: float) -> FilmFamily:
+        """Return the family at another value of a parameter that it does not vary."""
+        problem, load = self.problem.at(parameter, value, self.load)
+        return replace(self, problem=problem, load=load)
+
+    def positions(self, x: FloatArray) -> FloatArray:
+        """Return the loop (n_b, 3) as it is."""
+        return x
 
     def near(self, x: FloatArray) -> FilmFamily:
         """Return the film made anew at a loop (n_b, 3)."""
@@ -58,16 +79,18 @@ def family_of(point: BranchPoint) -> FilmFamily:
 def equilibrium(point: BranchPoint) -> Equilibrium:
     """Return the equilibrium of a film at a point of one of its branches."""
     family = family_of(point)
-    problem, shape = family.problem, family.film.shape(point.x)
-    found = problem.equilibrium(shape, point.model.tensions, point.value, Status.CONVERGED)
+    (problem, load), shape = family.at(point.value), family.film.shape(point.x)
+    found = problem.equilibrium(shape, point.model.tensions, load, Status.CONVERGED)
     classified = problem.classified(found)
     return replace(classified, iterations=point.corrections, stability=point.stability)
 
 
-def family_near(problem: Problem, shape: Shape) -> tuple[FilmFamily, FloatArray]:
+def family_near(
+    problem: Problem, shape: Shape, parameter: str = "load", load: float = 0.0
+) -> tuple[FilmFamily, FloatArray]:
     """Return the family good near a shape, and the shape's loop in its coordinates."""
     film = problem.film.of_loop(problem.film.prepared(shape))
-    return FilmFamily(problem, film), film.project(shape.x_loop)
+    return FilmFamily(problem, film, parameter, load), film.project(shape.x_loop)
 
 
 def likeness_of(problem: Problem, within: float) -> Likeness:

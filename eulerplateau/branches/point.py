@@ -46,6 +46,13 @@ class StepControl:
     max_points: int = 400
     least: float = 0.0
 
+    def scale(self, value: float) -> float:
+        """Return with what differences from a value are compared.
+
+        That is the value, or `unit` where zero is a value like any other.
+        """
+        return value if self.least >= 0 else self.unit
+
 
 @dataclass(frozen=True)
 class Direction:
@@ -110,9 +117,14 @@ def first_point(
     return BranchPoint(family, model, value, direction, 0.0, 0)
 
 
-def point_near(family: Family, x: FloatArray, value: float) -> BranchPoint | None:
-    """Return the equilibrium at a value next to a loop x (n, d), stable or not; or None."""
-    control = StepControl(window=(value, value), unit=max(value, 1.0))
+def point_near(
+    family: Family, x: FloatArray, value: float, least: float = 0.0
+) -> BranchPoint | None:
+    """Return the equilibrium at a value next to a loop x (n, d), stable or not; or None.
+
+    least : as of a StepControl
+    """
+    control = StepControl((value, value), unit=max(value, 1.0), least=least)
     at_this_value = Direction(np.zeros_like(x), control.unit)
     return correct(family, x, value, at_this_value, control)
 

@@ -61,7 +61,7 @@ class Progress:
     Attributes
     ----------
     leads : a heap
-    met : the special points found: (loop (n, d), value) of each
+    met : the special points found: (loop (n, d) as it lies in space, value) of each
     order : int, how many leads there have been
     branch : int, the number of the branch that is followed, or of the next
     origin : int or None, the number of the special point it starts from

@@ -37,8 +37,8 @@ _NO_PART = 1e-3
 # Arclength at which a branch is left for another: far enough for two distinct solutions
 # to be told apart, close enough to be certain of landing on the wanted one.
 _SWITCHING_STEP = 2e-3
-# Part of the film's pull below which what moves the loop is rounding: a true film does not
-# move a round one at all.
+# Part of the film's pull, or of all forces at the parameter's unit, below which what moves
+# the loop is rounding: a true film does not move a round one at all, nor does its twist.
 _IDLE = 1e-6
 # Part of an eigenvalue's change that it may be short of zero where it changes sign; and how
 # many times what rounding makes of it the change has to be.
@@ -112,14 +112,15 @@ def special_points(
     located.sort(key=lambda pair: pair[0].arclength)
     last = None
     for point, _ in located:
+        near = _TOGETHER * control.scale(point.value)
         # Symmetric loops lose several modes at once: one event, and one set of branches.
-        if last is not None and abs(point.value / last - 1) < _TOGETHER:
+        if last is not None and abs(point.value - last) < near:
             continue
         last = point.value
-        together = [i for other, i in located if abs(other.value / last - 1) < _TOGETHER]
+        together = [i for other, i in located if abs(other.value - last) < near]
         found = _describe(interval, point, min(together), len(together))
         # The eigenvalue of an all but free rotation wanders about zero: no event.
-        if found.error < _TOGETHER * point.value:
+        if found.error < near:
             yield found
 
 
@@ -229,10 +230,14 @@ def _step_along(
     )
 
 
-def _part_along(point: BranchPoint, mode: FloatArray) -> float:
-    slope = parameter_slope(point.family, point.energy, point.model)
-    pull = point.energy.rate(point.family.parameter, point.x).ravel() / point.model.scale
-    size = max(float(np.linalg.norm(slope)), _IDLE * float(np.linalg.norm(pull)))
+def _part_along(point: BranchPoint, mode: FloatArray, control: StepControl) -> float:
+    energy, model = point.energy, point.model
+    slope = parameter_slope(point.family, energy, model)
+    pull = energy.rate(point.family.parameter, point.x)
+    held = energy.constraint.force(point.x, model.tensions)
+    forces = [force / control.unit for force in (*energy.forces(point.x), held)]
+    sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pull, *forces)]
+    size = max(float(np.linalg.norm(slope)), _IDLE * max(sizes))
     return abs(float(slope @ mode)) / size
 
 
@@ -241,7 +246,7 @@ def _describe(
 ) -> SpecialPoint:
     values, vectors = point.model.eigen
     mode = point.model.displacement(vectors[:, index])
-    folds = _part_along(point, vectors[:, index]) > _NO_PART
+    folds = _part_along(point, vectors[:, index], interval.control) > _NO_PART
     if not folds:
         point = replace(point, direction=_through(point, index, interval.control))
     return SpecialPoint(
@@ -252,5 +257,9 @@ def _describe(
         error=interval.error(point, index),
         n_unstable=index,
         multiplicity=multiplicity,
-        symmetry=mode_symmetry(point.x, mode, mirrors=not point.energy.is_handed),
+        symmetry=mode_symmetry(
+            point.family.positions(point.x),
+            point.family.positions(mode),
+            mirrors=not point.energy.is_handed,
+        ),
     )

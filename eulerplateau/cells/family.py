@@ -71,6 +71,14 @@ class CellFamily:
         """Return the energy at a value of the parameter."""
         return self.cell.energy(*self.pair(value), self.edge)
 
+    def with_value(self, parameter: str, value: float) -> CellFamily:
+        """Return the family at another value of the parameter that it does not vary."""
+        return self if parameter == self.parameter else replace(self, fixed=value)
+
+    def positions(self, x: FloatArray) -> FloatArray:
+        """Return the loop (n, 2) as it is."""
+        return x
+
     def near(self, x: FloatArray) -> CellFamily:
         """Return the family good where edges are as short as those of a loop (n, 2)."""
         return replace(self, edge=shortest_edge(x))

@@ -67,7 +67,8 @@ def sweep(
 
     def one(spec: RunSpec, folder: Path) -> int:
         result = _run(spec, folder, quiet, resume, overwrite)
-        _report(result, _draw(result, pictures, render), quiet)
+        values = "loads" if spec.sweep.varied == "load" else "values"
+        _report(result, values, _draw(result, pictures, render), quiet)
         return NOT_CONVERGED_EXIT_CODE if result.failures else 0
 
     runs = planned(list(specs), values, out, load_run)
@@ -83,9 +84,13 @@ def _run(
         return run_sweep(spec, folder, resume=resume, overwrite=overwrite)
     from tqdm import tqdm
 
-    total = len(spec.loads())
+    total = len(spec.values())
     with tqdm(
-        total=total, desc=folder.name, unit="load", dynamic_ncols=True, disable=None
+        total=total,
+        desc=folder.name,
+        unit=spec.sweep.varied,
+        dynamic_ncols=True,
+        disable=None,
     ) as bar:
 
         def show(row: Row) -> None:
@@ -116,7 +121,8 @@ def _draw(result: RunResult, pictures: bool, render: bool) -> list[str]:
     return drawn
 
 
-def _report(result: RunResult, drawn: list[str], quiet: bool) -> None:
+def _report(result: RunResult, values: str, drawn: list[str], quiet: bool) -> None:
+    """Say what a sweep came to; `values` is what those are called that it is over."""
     for row in result.failures:
         click.echo(
             f"eulerplateau: {result.folder}: {row.load_name.text} {row.load:g} "
@@ -133,6 +139,6 @@ def _report(result: RunResult, drawn: list[str], quiet: bool) -> None:
         before(result.folder, result.before)
         converged = len(result.rows) - len(result.failures)
         click.echo(
-            f"{result.folder}: {converged} of {len(result.rows)} loads converged in "
+            f"{result.folder}: {converged} of {len(result.rows)} {values} converged in "
             f"{result.seconds:.1f} s: {', '.join(['sweep.csv', 'sweep.pvd', *drawn])}"
         )

@@ -27,7 +27,7 @@ from .motions import (
     rigid_motions as rigid_motions,
     sliding as sliding,
 )
-from .term import OwnTerm as OwnTerm, Term as Term
+from .term import LEAST as LEAST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,
     LengthMetric as LengthMetric,

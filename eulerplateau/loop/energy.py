@@ -126,6 +126,10 @@ class LoopEnergy:
         """Return whether all terms are still good at x."""
         return all(term.holds(x) for term in self.terms.values())
 
+    def reaches(self, x: FloatArray, other: FloatArray) -> bool:
+        """Return whether by all terms a short way leads from x to another loop."""
+        return all(term.reaches(x, other) for term in self.terms.values())
+
 
 def _summed(parts: list[FloatArray], n: int) -> FloatArray:
     """Return the sum of matrices (n, n), the same for all coordinates, and full ones."""

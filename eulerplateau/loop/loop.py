@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -27,6 +28,20 @@ class Loop:
 
     rest_lengths: FloatArray
     terms: Mapping[str, OwnTerm] = field(default_factory=dict)
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """What can be varied of these terms, by names: their values."""
+        own = (term.parameters.items() for term in self.terms.values())
+        return {name: value for pairs in own for name, value in pairs}
+
+    def with_value(self, parameter: str, value: float) -> Loop:
+        """Return the loop at another value of a parameter of its terms."""
+        # Copied with what is known of its lengths.
+        made, terms = copy(self), self.terms.items()
+        own = {name: term.with_value(parameter, value) for name, term in terms}
+        object.__setattr__(made, "terms", own)
+        return made
 
     @cached_property
     def mean_lengths(self) -> FloatArray:

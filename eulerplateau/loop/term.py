@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+
+# What a branch of films may vary: values down to these, included, do not exist.
+LEAST = {"load": 0.0, "link": -math.inf, "twist_ratio": 0.0}
 
 
 class Term(ABC):
@@ -67,9 +71,22 @@ class Term(ABC):
         """Return whether the term is still good at x."""
         return True
 
+    def reaches(self, x: FloatArray, other: FloatArray) -> bool:
+        """Return whether a short way leads to another loop: nothing passes through."""
+        return True
+
 
 class OwnTerm(Term):
     """What a loop's own energy has beside its bending: that of its twist."""
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """What can be varied of it, by the names that `rate` knows: values of LEAST."""
+        return {}
+
+    @abstractmethod
+    def with_value(self, parameter: str, value: float) -> OwnTerm:
+        """Return the term at another value of a parameter; itself if it has no such one."""
 
     @abstractmethod
     def energy(self, x: FloatArray) -> float:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -55,6 +55,17 @@ class Twist(OwnTerm):
     def gamma(self) -> float:
         """C / alpha."""
         return 2 * self.ratio
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """The link and C / B."""
+        return {"link": self.link, "twist_ratio": self.ratio}
+
+    def with_value(self, parameter: str, value: float) -> Twist:
+        """Return the twist at another link or C / B; what is known of loops stays known."""
+        if parameter == "link":
+            return replace(self, link=value)
+        return replace(self, ratio=value) if parameter == "twist_ratio" else self
 
     @property
     def is_handed(self) -> bool:
@@ -123,11 +134,15 @@ class Twist(OwnTerm):
         where that is not the change of the writhe: a strand would pass through another.
         """
         after = x + step
-        gained = tangent_area(differences(x), differences(after)) / (2 * math.pi)
-        before, then = self.writhe(x), self.writhe(after)
-        if abs(then - before - gained) > _PASSED:
+        gained = _gained(x, after)
+        if abs(self.writhe(after) - self.writhe(x) - gained) > _PASSED:
             raise LinAlgError("a strand of the loop would pass through another")
         return -math.pi * gained * (self.moment(x) + self.moment(after))
+
+    def reaches(self, x: FloatArray, other: FloatArray) -> bool:
+        """Return whether the writhe changes by as much as it does locally."""
+        gained = self.writhe(other) - self.writhe(x)
+        return abs(gained - _gained(x, other)) <= _PASSED
 
     def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
         """Return the derivative of the force (n, 3) by "link" or "twist_ratio"."""
@@ -163,6 +178,10 @@ class PlaneTwist(Twist):
         """Return 0."""
         return 0.0
 
+    def reaches(self, x: FloatArray, other: FloatArray) -> bool:
+        """Return True."""
+        return True
+
     def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
         """Return no change of the force by "link" or "twist_ratio"."""
         return np.zeros_like(x) if parameter in ("link", "twist_ratio") else None
@@ -171,6 +190,11 @@ class PlaneTwist(Twist):
 def polygon_writhe(x: FloatArray) -> float:
     """Return the writhe of a closed polygon x (n, 3), by all pairs of its edges."""
     return float(writhe(np.ascontiguousarray(x)))
+
+
+def _gained(x: FloatArray, after: FloatArray) -> float:
+    """Return by how much the writhe changes on a short way, modulo 2."""
+    return tangent_area(differences(x), differences(after)) / (2 * math.pi)
 
 
 def _slope(x: FloatArray) -> FloatArray:

@@ -58,7 +58,7 @@ def _branches(branches: Sequence[Branch]) -> tuple[Panel, ...]:
     The loop's total normal curvature is the order parameter of the paper, in which mirror
     images coincide; in the twist of the film's normal across the waist they do not.
     """
-    excess = energy_above(branches[0])
+    excess = energy_above(*(branch for branch in branches if branch.origin is None))
 
     def twists(series: Series) -> Sequence[Any]:
         return signed_twists(cast(Branch, series))

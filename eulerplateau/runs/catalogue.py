@@ -56,6 +56,7 @@ def run_catalogue(
             found = catalogue_at(problem, load, plan, lambda load=load: on_search(load))  # type: ignore[misc]
             for number, entry in enumerate(found):
                 recorder.record(
+                    problem,
                     entry.equilibrium,
                     {},
                     number=number,

@@ -97,6 +97,11 @@ class CellRow:
         return float(getattr(self, self.load_name.energy))
 
     @property
+    def energy_rate(self) -> float:
+        """The derivative of the energy by what is varied, at an equilibrium."""
+        return self.load_energy / self.load
+
+    @property
     def load_name(self) -> CellParameter:
         """What that is called."""
         return CELL_PARAMETERS[self.quantity]

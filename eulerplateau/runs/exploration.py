@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,13 +15,15 @@ from eulerplateau.branches import (
     equilibrium_near,
     explore,
     first_equilibrium,
+    where_from,
 )
 from eulerplateau.errors import SpecError
-from eulerplateau.film import FILM_LOADS
+from eulerplateau.film import LOADS
 from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk
 from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.kinds import film_kind
+from eulerplateau.runs.parameters import LOOP_PARAMETERS
 from eulerplateau.runs.recording import (
     Opening,
     Recorder,
@@ -34,11 +36,13 @@ from eulerplateau.runs.start import make_problem, start_shape, stored_start
 from eulerplateau.runs.table import special_of, write_special
 from eulerplateau.solvers import Equilibrium, Problem
 
-SPECIAL_COLUMNS = (
-    "number", "kind", "kL3_alpha", "kL3_alpha_error", "sigma_hat", "sigma_hat_error",
+_BEFORE = "number", "kind"
+_LOADS = "kL3_alpha", "kL3_alpha_error", "sigma_hat", "sigma_hat_error"
+_AFTER = (
     "branch", "step", "n_unstable", "eigenvalue", "multiplicity", "transverse", "breaks",
     "keeps",
 )  # fmt: skip
+SPECIAL_COLUMNS = (*_BEFORE, *_LOADS, *_AFTER)
 
 
 @dataclass(frozen=True)
@@ -77,31 +81,37 @@ def run_branches(
 
     Starts at the window's lowest load from the equilibrium a sweep would find there; with
     start.file from the equilibrium next to that shape, stable or not, at its own load.
+    Another parameter than the load has the loop's own value for its start, if that is in
+    the window.
     """
     started = time.perf_counter()
     disk = make_mesh(spec)
     if spec.film.plane:
         raise SpecError("film.plane", "should be false: branches leave the plane")
     problem = make_problem(spec, disk)
-    window = _window(spec)
-    column = FILM_LOADS[spec.film.model].column
-    row_type = film_kind(spec.loop.twist_ratio).branch_row
-    opening = Opening("branches", row_type, column, overwrite)
+    window, varied, held = spec.window(), spec.explored, spec.film.load
+    row_type = film_kind(spec.loop.twist_ratio, varied).branch_row
+    opening = Opening("branches", row_type, spec.column(varied), overwrite)
+    names = special_columns(opening.quantity)
     with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run
         special = special_of(run.rows, run.folder.path)
         if not run.finished:
-            write_special(run.folder.path, SPECIAL_COLUMNS, special)
-            new = run.progress is None
+            write_special(run.folder.path, names, special)
+            start = None
+            if run.progress is None:
+                problem, start = _start(spec, disk, problem, window)
             points = explore(
                 problem,
                 window,
-                _start(spec, disk, problem, window) if new else None,
+                start,
+                parameter=varied,
+                load=None if varied == "load" else held,
                 special_points=spec.branches.special_points,
                 unstable_modes=spec.branches.unstable_modes,
                 progress=run.progress,
             )
-            for row in _recorded(points, recorder, special):
+            for row in _recorded(points, recorder, names, special):
                 on_row(row)
                 heed()
     rows, kept = tuple(run.rows), (run.kept, run.finished, run.before)
@@ -111,12 +121,14 @@ def run_branches(
 def _recorded(
     points: Iterator[FilmPoint],
     recorder: Recorder[BranchRow],
+    names: Sequence[str],
     special: list[dict[str, Any]],
 ) -> Iterator[BranchRow]:
     """Write points as they come, special ones twice; yield their rows."""
     run = recorder.run
     for point in points:
         row = recorder.record(
+            point.problem,
             point.equilibrium,
             _modes(point),
             branch=point.branch,
@@ -126,35 +138,41 @@ def _recorded(
         )
         if point.special is not None and not point.known:
             special.append(_special(row, point.special))
-        keep_point(run, point, SPECIAL_COLUMNS, special)
+        keep_point(run, point, names, special)
         yield row
 
 
-def _window(spec: RunSpec) -> tuple[float, float]:
-    loads = [load for load in spec.loads() if load > 0] or [1.0]
-    low = spec.branches.load_min or min(loads)
-    high = spec.branches.load_max or max(loads)
-    if low >= high:
-        raise SpecError(
-            "branches.load_min", f"found {low:g}; should be below load_max, {high:g}"
-        )
-    return low, high
+def special_columns(quantity: str) -> tuple[str, ...]:
+    """Return the columns of the special points of a run, by the column of what it varies.
+
+    Where that is no load, both loads are there too, which are held.
+    """
+    if quantity not in LOOP_PARAMETERS:
+        return SPECIAL_COLUMNS
+    varied = quantity, f"{quantity}_error"
+    return *_BEFORE, *varied, "kL3_alpha", "sigma_hat", *_AFTER
 
 
 def _start(
     spec: RunSpec, disk: Disk, problem: Problem, window: tuple[float, float]
-) -> Equilibrium:
+) -> tuple[Problem, Equilibrium]:
+    """Return the equilibrium from which branches start, and of which problem it is one."""
     stored, shape = stored_start(spec, disk), start_shape(spec, disk)
+    varied, held = spec.explored, spec.film.load or 0.0
     if stored is None:
-        return first_equilibrium(problem, window[0], shape)
-    load = stored.load(problem.film.load)
-    if not window[0] <= load <= window[1]:
+        there, load = where_from(problem, varied, window, held)
+        return there, first_equilibrium(there, load, shape, varied)
+    known = {"load": stored.load(problem.film.load), **stored.parameters}
+    value = known.get(varied, problem.value(varied, held))
+    if not window[0] <= value <= window[1]:
+        ends = "load_min and load_max" if varied == "load" else "low and high"
         raise SpecError(
             "start.file",
-            f"{spec.start.file} has the load {load:g}, outside the window "
-            f"{window[0]:g} to {window[1]:g}: set branches.load_min and load_max",
+            f"{spec.start.file} has the {varied} {value:g}, outside the window "
+            f"{window[0]:g} to {window[1]:g}: set branches.{ends}",
         )
-    return equilibrium_near(problem, shape, load)
+    there, load = problem.at(varied, value, held)
+    return there, equilibrium_near(there, shape, load, varied)
 
 
 def _modes(point: FilmPoint) -> dict[str, FloatArray]:
@@ -167,10 +185,7 @@ def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:
     return {
         "number": row.special,
         "kind": special.kind,
-        "kL3_alpha": row.kL3_alpha,
-        "kL3_alpha_error": row.load_name.springs(special.error),
-        "sigma_hat": row.sigma_hat,
-        "sigma_hat_error": row.load_name.tension(special.error),
+        **_place(row, special.error),
         "branch": row.branch,
         "step": row.step,
         "n_unstable": special.n_unstable,
@@ -180,3 +195,13 @@ def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:
         "breaks": "; ".join(special.symmetry.breaks),
         "keeps": "; ".join(special.symmetry.keeps),
     }
+
+
+def _place(row: BranchRow, error: float) -> dict[str, float]:
+    """Return where a special point lies, and what rounding can have moved it by."""
+    place = {"kL3_alpha": row.kL3_alpha, "sigma_hat": row.sigma_hat}
+    load = LOADS.get(row.quantity)
+    if load is None:
+        return {**place, row.quantity: row.load, f"{row.quantity}_error": error}
+    errors = load.springs(error), load.tension(error)
+    return place | dict(zip(("kL3_alpha_error", "sigma_hat_error"), errors, strict=True))

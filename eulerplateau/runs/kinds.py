@@ -7,9 +7,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from eulerplateau.film import FILM_LOADS, SPRING_LOAD
+from eulerplateau.runs.parameters import LOOP_PARAMETERS
 from eulerplateau.runs.rows import (
     BranchRow,
     LoadName,
+    RatioBranchRow,
+    RatioRow,
     Row,
     TwistBranchRow,
     TwistRow,
@@ -67,8 +70,20 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
 
 FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes, FILM_STATES)
 WITH_TWIST = replace(FILM, row=TwistRow, branch_row=TwistBranchRow)
+# Rows with a column for what is varied, where a loop's rows have none.
+_ROWS_OF = {"twist_ratio": (RatioRow, RatioBranchRow)}
 
 
-def film_kind(twist_ratio: Any) -> Kind:
-    """Return the kind of a film's run, by what it says of its loop's twist."""
-    return FILM if twist_ratio is None else WITH_TWIST
+def film_kind(twist_ratio: Any, varied: Any = "load") -> Kind:
+    """Return the kind of a film's run, by its loop's twist and what it varies.
+
+    What varies a number of the loop is not to be shown over the load.
+    """
+    kind = FILM if twist_ratio is None else WITH_TWIST
+    own = LOOP_PARAMETERS.get(varied)
+    if own is None:
+        return kind
+    row, branch_row = _ROWS_OF.get(own.column, (kind.row, kind.branch_row))
+    return replace(
+        kind, row=row, branch_row=branch_row, load=lambda about: own, common_load=None
+    )

@@ -79,6 +79,13 @@ class Refinement(Settings):
         return sorted(float(v) for v in self.onset * (1 + distances))
 
 
+class SignedRange(Range):
+    """The same of a parameter that may be negative."""
+
+    start: float
+    stop: float
+
+
 def _kind_of_load(given: Any) -> str:
     """Tell loads apart, as read from TOML and as the models that are written out."""
     if isinstance(given, Refinement) or (isinstance(given, dict) and "onset" in given):
@@ -111,13 +118,18 @@ def _not_endless(loads: tuple[Any, ...]) -> tuple[Any, ...]:
     return loads
 
 
-# A list of them, of which there is one at least.
-Loads = Annotated[
-    tuple[Load, ...],
-    Field(min_length=1),
-    BeforeValidator(_a_list),
-    AfterValidator(_not_endless),
+# The same of a parameter that may be negative.
+Value = Annotated[
+    Annotated[float, Tag("number")]
+    | Annotated[SignedRange, Tag("range")]
+    | Annotated[Refinement, Tag("refinement")],
+    Discriminator(_kind_of_load),
 ]
+
+# A list of them, of which there is one at least.
+_LIST = Field(min_length=1), BeforeValidator(_a_list), AfterValidator(_not_endless)
+Loads = Annotated[tuple[Load, ...], *_LIST]
+Values = Annotated[tuple[Value, ...], *_LIST]
 
 
 def in_order(loads: Sequence[float | Range | Refinement], direction: str) -> list[float]:

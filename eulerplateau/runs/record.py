@@ -199,7 +199,8 @@ def kind_of(about: Mapping[str, Any]) -> Kind:
 
         return CELL
     try:
-        return film_kind(about["spec"]["loop"].get("twist_ratio"))
+        twist_ratio = about["spec"]["loop"].get("twist_ratio")
+        return film_kind(twist_ratio, about.get("varied", "load"))
     except (AttributeError, KeyError, TypeError):
         return FILM
 

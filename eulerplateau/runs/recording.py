@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
-import platform
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from eulerplateau import __version__
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import EulerPlateauError, OutputError
 from eulerplateau.film import Load
 from eulerplateau.interruption import working_on
-from eulerplateau.mesh import Disk, Measurer
+from eulerplateau.mesh import Measurer
+from eulerplateau.runs.about import blas_threads, describe, surroundings
 from eulerplateau.runs.checkpoint import Arrays
 from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
 from eulerplateau.runs.folder import RunFolder, shape_name
-from eulerplateau.runs.inputs import contents
-from eulerplateau.runs.rows import Record, Row
+from eulerplateau.runs.rows import Record, Row, columns
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.table import write_special
 from eulerplateau.solvers import Equilibrium, Problem
-from eulerplateau.threads import pools, threads
+from eulerplateau.threads import threads
 
 if TYPE_CHECKING:
     from eulerplateau.branches import DiagramPoint
@@ -108,7 +104,7 @@ def opened(
     """
     summary = {"results": RESULTS, **summary}
     with only_writer(path), threads(BLAS_THREADS):
-        where = {"versions": _versions(), "machine": _machine()}
+        where = surroundings()
         lying: Lying[T] = Lying((), False, {})
         if not opening.overwrite:
             how = opening.name, opening.row_type, opening.quantity, opening.loads
@@ -182,19 +178,27 @@ class Recorder(Generic[R]):
     """Writes a film's equilibria into a run."""
 
     run: OpenRun[R]
-    problem: Problem
     measurer: Measurer
-    row_type: type[R]
+    opening: Opening[R]
 
     def record(
-        self, found: Equilibrium, modes: Mapping[str, FloatArray], **columns: Any
+        self,
+        problem: Problem,
+        found: Equilibrium,
+        modes: Mapping[str, FloatArray],
+        **cells: Any,
     ) -> R:
-        """Write an equilibrium, modes as its fields; `columns` are the row type's own."""
+        """Write an equilibrium of a problem, modes as its fields.
+
+        `cells` are those of the row type's own columns.
+        """
         measures, curvatures = self.measurer.measured(found.shape)
-        own, fields = self.problem.said_of_loop(found.shape)
-        step, load = len(self.run.rows), self.problem.film.load
-        row = make_row(step, found, load, self.row_type, asdict(measures) | columns | own)
-        disk, rest = self.measurer.disk_of(found.shape), self.problem.disk.digest
+        own, fields = problem.said_of_loop(found.shape)
+        row_type, parameters = self.opening.row_type, problem.loop.parameters.items()
+        own |= {name: v for name, v in parameters if name in columns(row_type)}
+        cells |= {**asdict(measures), **own, "quantity": self.opening.quantity}
+        row = make_row(len(self.run.rows), found, problem.film.load, row_type, cells)
+        disk, rest = self.measurer.disk_of(found.shape), problem.disk.digest
         state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
         known = {**modes, **fields}, rest, state, curvatures
         self.run.folder.record(row, disk, found.shape.x, *known)
@@ -208,62 +212,21 @@ def recording(
 ) -> Iterator[Recorder[R]]:
     """Open the folder `path` for a film's run, as `opened` does."""
     disk = problem.disk
-    with opened(path, opening, describe(spec, disk), started) as run:
-        yield Recorder(run, problem, Measurer(disk), opening.row_type)
-
-
-def blas_threads() -> list[int]:
-    """Return the threads of each BLAS that is loaded, as they are now."""
-    return [pool["num_threads"] for pool in pools()]
-
-
-def describe(spec: RunSpec, mesh: Disk) -> dict[str, Any]:
-    """Return what run.json says before anything is computed.
-
-    B and E are the loop's and all edges, from which the paper's sigma = 4 sqrt(3) k /
-    (2 - B/E) can be had; for springs sigma_hat in sweep.csv is 2 sqrt(3) k L^3 / alpha.
-    """
-    return {
-        "spec": spec.model_dump(mode="json"),
-        "mesh": {
-            "sha256": mesh.digest,
-            "vertices": mesh.n_v,
-            "triangles": len(mesh.triangles),
-            "loop_edges_B": mesh.n_b,
-            "edges_E": len(mesh.edges),
-            "length": mesh.length,
-        },
-        "seed": spec.start.seed,
-        "start_sha256": contents(spec.start.file),
-    }
-
-
-def _machine() -> str:
-    """Return the kind of processor, and for which of them BLAS computes."""
-    kinds = {pool.get("architecture", "") for pool in pools()}
-    return " ".join([platform.machine(), *sorted(kinds - {""})])
-
-
-@cache
-def _versions() -> dict[str, str]:
-    return {
-        "eulerplateau": __version__,
-        "python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "scipy", "numba", "vtk", "gmsh")},
-    }
+    about = describe(spec, disk, opening.quantity)
+    with opened(path, opening, about, started) as run:
+        yield Recorder(run, Measurer(disk), opening)
 
 
 def make_row(
-    step: int, found: Equilibrium, load: Load, row_type: type[R], columns: dict[str, Any]
+    step: int, found: Equilibrium, load: Load, row_type: type[R], cells: dict[str, Any]
 ) -> R:
-    """Return the row of an equilibrium; `columns` holds the fields of its Measures.
+    """Return the row of an equilibrium; `cells` holds the fields of its Measures.
 
     `load` says what found.load is. Of a film with a tension, kL3_alpha is the load at which
     springs on equilateral triangles carry the same.
     """
     return row_type(
         step=step,
-        quantity=load.column,
         kL3_alpha=load.springs(found.load),
         sigma_hat=load.tension(found.load),
         energy=found.energy,
@@ -277,7 +240,7 @@ def make_row(
         iterations=found.iterations,
         seconds=found.seconds,
         status=found.status,
-        **columns,
+        **{"quantity": load.column, **cells},
     )
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Protocol
 
-from eulerplateau.film import LOADS, SPRING_LOAD, Load
+from eulerplateau.film import LOADS, SPRING_LOAD
+from eulerplateau.runs.parameters import LOOP_PARAMETERS
 from eulerplateau.solvers import Status
 
 
@@ -31,6 +33,10 @@ class LoadName(Protocol):
     @property
     def label(self) -> str:
         """Its name as a label of an axis."""
+
+
+# Of films, by their columns.
+_NAMES: Mapping[str, LoadName] = {**LOADS, **LOOP_PARAMETERS}
 
 
 class Record(Protocol):
@@ -85,8 +91,9 @@ class BranchRecord(Record, Protocol):
 class Row:
     """One load of a sweep; its fields but the last, in this order, are sweep.csv's columns.
 
-    `quantity` says which of kL3_alpha and sigma_hat is to be taken for the load; the table
-    does not repeat it in every row, for run.json knows the film.
+    `quantity` says which of kL3_alpha and sigma_hat is to be taken for the load, or which
+    column for it where another parameter is varied; the table does not repeat it in every
+    row, for run.json knows the film and what is varied.
 
     Units: lengths L, energies alpha/L, max_turning and waist_twist degrees. None is an
     empty cell ("not computed"); a float that came out as NaN or infinite is written `nan`
@@ -119,7 +126,7 @@ class Row:
 
     @property
     def load(self) -> float:
-        """The load, in the unit that `quantity` says."""
+        """The load, in the unit that `quantity` says, or what is varied in place of it."""
         return float(getattr(self, self.quantity))
 
     @property
@@ -128,14 +135,15 @@ class Row:
         return None
 
     @property
-    def load_energy(self) -> float:
-        """The part of the energy that is proportional to the load."""
-        return self.film_energy
+    def energy_rate(self) -> float:
+        """The derivative of the energy by what is varied, at an equilibrium."""
+        own = LOOP_PARAMETERS.get(self.quantity)
+        return self.film_energy / self.load if own is None else own.energy_rate(self)
 
     @property
-    def load_name(self) -> Load:
+    def load_name(self) -> LoadName:
         """What this load is called."""
-        return LOADS[self.quantity]
+        return _NAMES[self.quantity]
 
     @property
     def converged(self) -> bool:
@@ -184,13 +192,35 @@ class _OfTwist:
 
 
 @dataclass(frozen=True)
+class _OfRatio:
+    """What a row says where the rigidity to twist is varied.
+
+    Attributes
+    ----------
+    twist_ratio : float, C / B
+    """
+
+    twist_ratio: float
+
+
+@dataclass(frozen=True)
 class TwistRow(_OfTwist, Row):
-    """One load of a sweep of a loop that resists twist."""
+    """One load, or link, of a sweep of a loop that resists twist."""
 
 
 @dataclass(frozen=True)
 class TwistBranchRow(_OfTwist, BranchRow):
     """One point of a branch of a loop that resists twist."""
+
+
+@dataclass(frozen=True)
+class RatioRow(_OfRatio, TwistRow):
+    """One rigidity to twist of a sweep."""
+
+
+@dataclass(frozen=True)
+class RatioBranchRow(_OfRatio, TwistBranchRow):
+    """One point of a branch in the rigidity to twist."""
 
 
 @dataclass(frozen=True)

@@ -232,9 +232,9 @@ def energy_above(*first: Series) -> Callable[[Series], FloatArray]:
     """Return the function that gives a branch's energy (n,) above that of branch `first`.
 
     Of a branch that was followed both ways, `first` are both. It compares at equal loads,
-    and is NaN where `first` does not reach, or not without turning. At equilibrium
-    dE/dload is the energy that is proportional to the load over the load, so that cubics
-    interpolate the first branch's energy to fourth order in the step.
+    and is NaN where `first` does not reach, or not without turning. At an equilibrium
+    the energy's derivative is known (energy_rate), so that cubics interpolate the first
+    branch's energy to fourth order in the step.
     """
     from scipy.interpolate import CubicHermiteSpline
 
@@ -243,7 +243,7 @@ def energy_above(*first: Series) -> Callable[[Series], FloatArray]:
         return lambda branch: np.full(len(branch.rows), np.nan)
     loads = np.array(sorted(known))
     energy = np.array([known[load].energy for load in loads])
-    slope = np.array([known[load].load_energy for load in loads]) / loads
+    slope = np.array([known[load].energy_rate for load in loads])
     base = CubicHermiteSpline(loads, energy, slope, extrapolate=False)
     return lambda branch: np.array(
         [row.energy - float(base(row.load)) for row in branch.rows]

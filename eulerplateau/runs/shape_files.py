@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,7 @@ from eulerplateau.mesh import (
     write_vtp,
     write_whole,
 )
+from eulerplateau.runs.parameters import LOOP_PARAMETERS
 from eulerplateau.runs.rows import LoadName, Row
 
 # Field data of a shape file: of its row, and the SHA-256 of the mesh at rest in bytes.
@@ -47,6 +48,7 @@ class StoredShape(Shape):
         Of the row of sweep.csv or branches.csv it belongs to.
     rest_mesh : str
         SHA-256 of the mesh at rest, as in run.json; empty if the file does not say.
+    parameters : what the run varied in place of the load, by its column; or empty
     """
 
     step: int
@@ -54,6 +56,7 @@ class StoredShape(Shape):
     sigma_hat: float
     energy: float
     rest_mesh: str = ""
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
     def load(self, film: Load) -> float:
         """Return the load it was found at, in that of a film."""
@@ -96,12 +99,13 @@ def write_shape(
     Point fields on the loop: kappa, kappa_n, kappa_g, contact_angle, tangent, normal (of
     the film); inside: angle_defect; everywhere: on_loop (1 or 0) and the vectors `modes`,
     (n_v, 3) each, under their names. Field data, of its `row`: step, kL3_alpha, sigma_hat,
-    energy, and the SHA-256 of the mesh at rest, `rest_mesh`, by default that of `mesh`;
-    and of the solver's `state` what it needs to go on from here. `curvatures` are those of
-    the shape, found here if they are not known.
+    energy, what is varied if that is no load, and the SHA-256 of the mesh at rest,
+    `rest_mesh`, by default that of `mesh`; and of the solver's `state` what it needs to go
+    on from here. `curvatures` are those of the shape, found here if they are not known.
     Raises OutputError if the file cannot be written.
     """
-    about = {name: np.array([getattr(row, name)]) for name in _OF_ITS_ROW}
+    names = dict.fromkeys((*_OF_ITS_ROW, row.quantity))
+    about = {name: np.array([getattr(row, name)]) for name in names}
     digest = bytes.fromhex(mesh.digest if rest_mesh is None else rest_mesh)
     write_vtp(
         path,
@@ -136,6 +140,7 @@ def read_shape(path: str | Path) -> StoredShape:
         sigma_hat=float(about["sigma_hat"][0]),
         energy=float(about["energy"][0]),
         rest_mesh=digest.astype(np.uint8).tobytes().hex(),
+        parameters={n: float(about[n][0]) for n in LOOP_PARAMETERS if n in about},
     )
 
 

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import MeshSpec
 from eulerplateau.runs.loads import Load as Load, Loads, in_order as in_order
 from eulerplateau.runs.loop_spec import LoopSettings
+from eulerplateau.runs.sweep_spec import BranchSettings, SweepSettings
 from eulerplateau.settings import Model, Settings, read_toml, validate
 
 # Keys that name a file.
@@ -33,10 +34,13 @@ class FilmSettings(Settings):
     ----------
     plane : bool
         Keeps a film of the true area in its plane, where its loop is all it needs.
+    load : float, k L^3 / alpha of springs and sigma_hat of other films
+        Where another parameter than the load is varied: that at which it is.
     """
 
     model: Literal["springs", "dirichlet", "area"] = "springs"
     plane: bool = False
+    load: float | None = Field(default=None, ge=0)
 
 
 class StartSettings(Settings):
@@ -66,36 +70,6 @@ class StartSettings(Settings):
         return given
 
 
-class SweepSettings(Settings):
-    """Which loads, in which order.
-
-    Attributes
-    ----------
-    loads : list of numbers, ranges {start, stop, step} and refinements
-        {onset, nearest, farthest, count}; sorted, each value once.
-    quantity : "kL3_alpha" or "k" for springs, "sigma_hat" or "sigma" for other films
-        What `loads` are: k L^3 / alpha or spring constants k, sigma L^3 / alpha or tensions
-        sigma. By default the load, not the constant.
-    direction : "up", "down" or "up-down"
-    """
-
-    loads: Loads
-    quantity: Literal["kL3_alpha", "k", "sigma_hat", "sigma"] | None = None
-    direction: Literal["up", "down", "up-down"] = "up"
-
-    @field_validator("loads")
-    @classmethod
-    def _not_negative(cls, loads: tuple[Any, ...]) -> tuple[Any, ...]:
-        for load in loads:
-            if isinstance(load, float) and load < 0:
-                raise ValueError(f"should hold no negative number such as {load}")
-        return loads
-
-    def values(self) -> list[float]:
-        """Return the values in the order in which they are swept."""
-        return in_order(self.loads, self.direction)
-
-
 class SolverSettings(Settings):
     """Which solver, and after how many iterations it gives up on a load."""
 
@@ -113,26 +87,6 @@ class OutputSettings(Settings):
     """
 
     modes: int = Field(default=0, ge=0)
-
-
-class BranchSettings(Settings):
-    """Where `eulerplateau branches` ends; a sweep does not use it.
-
-    Attributes
-    ----------
-    load_min, load_max : float
-        The window of loads, k L^3 / alpha of springs and sigma_hat of other films; by
-        default that of sweep.loads.
-    special_points : int
-        New branches are followed from the first so many folds and bifurcations.
-    unstable_modes : int
-        A branch is left where more modes than this are unstable.
-    """
-
-    load_min: float | None = Field(default=None, gt=0)
-    load_max: float | None = Field(default=None, gt=0)
-    special_points: int = Field(default=8, ge=0)
-    unstable_modes: int = Field(default=3, ge=0)
 
 
 class CatalogueSettings(Settings):
@@ -204,19 +158,58 @@ class RunSpec(Settings):
         return self
 
     @model_validator(mode="after")
+    def _what_is_varied_is_there(self) -> RunSpec:
+        if self.loop.twist_ratio is None:
+            for key, section in ("sweep", self.sweep), ("branches", self.branches):
+                if section.parameter not in (None, "load"):
+                    problem = f"found {section.parameter!r}; needs loop.twist_ratio"
+                    raise SpecError(f"{key}.parameter", problem)
+        others = {self.sweep.varied, self.explored} - {"load"}
+        if not others and self.film.load is not None:
+            problem = "is for runs that vary something else: loads are sweep.loads"
+            raise SpecError("film.load", problem)
+        if others and self.film.load is None:
+            what = " and ".join(sorted(others))
+            raise SpecError("film.load", f"is missing: the load at which {what} is varied")
+        self.branches.check_window(self.explored)
+        return self
+
+    @model_validator(mode="after")
     def _loads_are_finite(self) -> RunSpec:
         if not np.isfinite(self.loads()).all():
             raise ValueError("sweep.loads times L^3 / alpha overflows: use smaller values")
         return self
 
+    @property
+    def explored(self) -> str:
+        """What is varied along branches."""
+        return self.branches.parameter or self.sweep.varied
+
+    def column(self, varied: str) -> str:
+        """Return the column of what is varied."""
+        return FILM_LOADS[self.film.model].column if varied == "load" else varied
+
+    def values(self) -> list[float]:
+        """Return what is swept, loads or values of another parameter, in order."""
+        return self.loads() if self.sweep.varied == "load" else self.sweep.in_order()
+
+    def window(self) -> tuple[float, float]:
+        """Return the window of branches; raises SpecError where it is none."""
+        values = self.values() if self.explored == self.sweep.varied else []
+        if self.explored == "load" and values:
+            values = [load for load in values if load > 0] or [1.0]
+        return self.branches.window(self.explored, values)
+
     def loads(self) -> list[float]:
         """Return the film's loads in the order in which they are swept."""
+        if self.film.load is not None and self.sweep.varied != "load":
+            return [self.film.load]
         scale = 1.0
         if self.sweep.quantity == FILM_LOADS[self.film.model].constant:
             length = self.loop.length
             # Not length**3, which raises where a product overflows to infinity.
             scale = length * length * length / self.loop.alpha
-        return [scale * value for value in self.sweep.values()]
+        return [scale * value for value in self.sweep.in_order()]
 
 
 def load_run(path: Path, overrides: dict[str, Any]) -> RunSpec:

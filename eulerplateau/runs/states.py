@@ -101,7 +101,7 @@ def stable_states(
     Of those alike in load and measure, which are mirror images, the first.
     """
     rows = [part[len(part) // 2] for part in stretches if len(part) >= _STUB]
-    load = _ALIKE * max((row.load for row in rows), default=0.0)
+    load = _ALIKE * max((abs(row.load) for row in rows), default=0.0)
     bend = _ALIKE * max((abs(states.measure(row)) for row in rows), default=0.0)
     kept: list[Any] = []
     for row in rows:

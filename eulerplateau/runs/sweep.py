@@ -11,9 +11,9 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import ConflictError, EulerPlateauError
-from eulerplateau.film import FILM_LOADS
 from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk, Shape
+from eulerplateau.runs.about import describe
 from eulerplateau.runs.continuing import look
 from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.inputs import make_mesh
@@ -21,7 +21,6 @@ from eulerplateau.runs.kinds import film_kind
 from eulerplateau.runs.recording import (
     Opening,
     OpenRun,
-    describe,
     not_converged,
     recording,
 )
@@ -29,7 +28,7 @@ from eulerplateau.runs.rows import Row
 from eulerplateau.runs.shape_files import read_state
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import make_problem, start_shape
-from eulerplateau.solvers import Equilibrium, Problem, sweep
+from eulerplateau.solvers import Equilibrium, Problem, follow_steps
 
 
 @dataclass(frozen=True)
@@ -75,11 +74,9 @@ def run_sweep(
     disk = make_mesh(spec)
     problem = make_problem(spec, disk)
     start, tensions, solver = start_shape(spec, disk), None, spec.solver
-    column = FILM_LOADS[spec.film.model].column
-    loads = spec.loads()
-    row_type = film_kind(spec.loop.twist_ratio).row
-    own = loads if resume else None
-    opening = Opening("sweep", row_type, column, overwrite, loads=own)
+    opening = _opening(spec, overwrite, resume)
+    held, varied = spec.film.load or 0.0, spec.sweep.varied
+    steps = [problem.at(varied, value, held) for value in spec.values()]
     with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run
         neutral = _neutral(run)
@@ -87,15 +84,17 @@ def run_sweep(
             start, tensions = _state(run, disk, start)
             recorder.measurer.measure(start)
         try:
-            for found in sweep(
+            left = steps[run.kept :]
+            swept = follow_steps(
                 problem,
-                loads[run.kept :],
+                left,
                 start,
                 tensions=tensions,
                 solver=solver.name,
                 max_iterations=solver.max_iterations,
-            ):
-                row = recorder.record(found, _modes(spec, problem, found))
+            )
+            for found, (there, _) in zip(swept, left, strict=True):
+                row = recorder.record(there, found, _modes(spec, there, found))
                 neutral += [row.step] if found.n_neutral else []
                 on_row(row)
                 heed()
@@ -115,16 +114,23 @@ def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictErro
     """Return what stands against carrying out a run in a folder; None if nothing does."""
     if not (path / "run.json").is_file():
         return None
-    load = FILM_LOADS[spec.film.model].column
-    loads = spec.loads() if resume else None
+    opening = _opening(spec, False, resume)
+    column = opening.quantity
     try:
-        row_type = film_kind(spec.loop.twist_ratio).row
-        look(path, describe(spec, make_mesh(spec)), "sweep", row_type, load, loads)
+        about = describe(spec, make_mesh(spec), column)
+        look(path, about, "sweep", opening.row_type, column, opening.loads)
     except ConflictError as error:
         return error
     except EulerPlateauError:
         pass  # whatever it is, the run says it when its turn comes
     return None
+
+
+def _opening(spec: RunSpec, overwrite: bool, resume: bool) -> Opening[Row]:
+    """Return how the folder of a sweep is opened."""
+    varied, loads = spec.sweep.varied, spec.values() if resume else None
+    row_type = film_kind(spec.loop.twist_ratio, varied).row
+    return Opening("sweep", row_type, spec.column(varied), overwrite, loads=loads)
 
 
 def _neutral(run: OpenRun[Row]) -> list[int]:

@@ -15,5 +15,11 @@ from .second_variation import (
     stability as stability,
     tangent_model as tangent_model,
 )
-from .solving import SOLVERS as SOLVERS, solve as solve, sweep as sweep
+from .solving import (
+    SOLVERS as SOLVERS,
+    check_values as check_values,
+    follow_steps as follow_steps,
+    solve as solve,
+    sweep as sweep,
+)
 from .start import displaced as displaced

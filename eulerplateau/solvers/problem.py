@@ -6,6 +6,7 @@ to c_v(x) = (|e_v|^2 - s_v^2) / (2 s_v) = 0 for every loop edge.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -77,6 +78,18 @@ class Problem:
     def loop_vertices(self) -> IntArray:
         """Vertices of the loop (n_b,), cyclic."""
         return self.disk.loop
+
+    def value(self, parameter: str, load: float) -> float:
+        """Return a parameter of the energy: the load, or one of the loop's own."""
+        return {"load": load, **self.loop.parameters}[parameter]
+
+    def at(self, parameter: str, value: float, load: float) -> tuple[Problem, float]:
+        """Return the problem and its load at another value of one of these parameters."""
+        if parameter == "load":
+            return self, value
+        made = copy(self)
+        object.__setattr__(made, "loop", self.loop.with_value(parameter, value))
+        return made, load
 
     def shape(self, x: ArrayLike) -> Shape:
         """Return the disk with its vertices at x (n_v, 3), in units of L.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib import import_module
 from typing import Protocol, cast
 
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
+from eulerplateau.loop import LEAST
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium
 from eulerplateau.solvers.problem import Problem
@@ -21,6 +22,7 @@ from eulerplateau.threads import one_thread
 SOLVERS = {"newton": "newton", "cg": "conjugate_gradient", "cg-plain": "plain_gradient"}
 
 Start = Shape | Equilibrium | ArrayLike
+Step = tuple[Problem, float]
 
 
 class Minimise(Protocol):
@@ -84,33 +86,86 @@ def solve(
 
 def sweep(
     problem: Problem,
-    loads: Iterable[float],
+    loads: Iterable[float] | None = None,
     start: Start | None = None,
     *,
+    parameter: str = "load",
+    values: Iterable[float] | None = None,
+    load: float | None = None,
     tensions: ArrayLike | None = None,
     solver: str = "newton",
     max_iterations: int | None = None,
 ) -> Iterator[Equilibrium]:
     """Yield one equilibrium per load, each started from the last shape.
 
-    A shape that is not finite is yielded, and not started from. See `solve`.
+    Or one per value of another `parameter`, "link" or "twist_ratio" of a loop that resists
+    twist, at one `load`. A shape that is not finite is yielded, and not started from. See
+    `solve`.
+    """
+    if parameter == "load":
+        if loads is None or values is not None or load is not None:
+            raise SpecError("loads", "should be given, and neither values nor load")
+        steps = [(problem, _load(each)) for each in loads]
+    else:
+        if loads is not None or values is None or load is None:
+            problem_is = f"of {parameter} should be given, and a load in place of loads"
+            raise SpecError("values", problem_is)
+        given, held = check_values(problem, parameter, values), _load(load)
+        steps = [problem.at(parameter, value, held) for value in given]
+    return follow_steps(
+        problem,
+        steps,
+        start,
+        tensions=tensions,
+        solver=solver,
+        max_iterations=max_iterations,
+    )
+
+
+def follow_steps(
+    problem: Problem,
+    steps: Sequence[Step],
+    start: Start | None = None,
+    *,
+    tensions: ArrayLike | None = None,
+    solver: str = "newton",
+    max_iterations: int | None = None,
+) -> Iterator[Equilibrium]:
+    """Yield one equilibrium per step (problem, load), each started from the last shape.
+
+    The steps' problems are `problem` at other values of its loop's parameters.
     """
     shape, known = _start(problem, start)
     if tensions is not None:
         known = _tensions(problem, tensions)
-    minimise, limit = _named(solver), _limit(max_iterations)
-    return _swept(problem, [_load(load) for load in loads], shape, known, minimise, limit)
+    return _swept(steps, shape, known, _named(solver), _limit(max_iterations))
+
+
+def check_values(problem: Problem, parameter: str, values: Iterable[float]) -> list[float]:
+    """Return values of a parameter of a problem's loop; raises SpecError for wrong ones."""
+    known = problem.loop.parameters
+    if parameter not in known:
+        names = " or ".join(repr(name) for name in ("load", *known))
+        raise SpecError("parameter", f"found {parameter!r}; should be {names} of this loop")
+    try:
+        found = [float(value) for value in values]
+    except (TypeError, ValueError):
+        raise SpecError(parameter, "should be numbers") from None
+    for value in found:
+        if not (np.isfinite(value) and value > LEAST[parameter]):
+            wanted = "finite" if np.isinf(LEAST[parameter]) else "positive"
+            raise SpecError(parameter, f"found {value:g}; should be {wanted}")
+    return found
 
 
 def _swept(
-    problem: Problem,
-    loads: list[float],
+    steps: Sequence[Step],
     shape: Shape,
     tensions: FloatArray | None,
     minimise: Minimise,
     limit: int | None,
 ) -> Iterator[Equilibrium]:
-    for load in loads:
+    for problem, load in steps:
         with one_thread():
             found = minimise(problem, load, shape, tensions, limit, lambda x_loop: None)
         yield found

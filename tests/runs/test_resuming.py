@@ -233,7 +233,7 @@ def test_run_that_fails_before_its_first_row_replaces_nothing(
     def fails(*args: object, **more: object) -> None:
         raise end
 
-    monkeypatch.setattr("eulerplateau.runs.sweep.sweep", fails)
+    monkeypatch.setattr("eulerplateau.runs.sweep.follow_steps", fails)
     with pytest.raises((KeyboardInterrupt, SpecError)):
         run_sweep(new, tmp_path / "run", overwrite=True)
     assert everything(tmp_path / "run") == before

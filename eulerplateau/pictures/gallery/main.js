@@ -4,7 +4,8 @@ const gallery = readGallery(document.getElementById("data"));
 const all = curves(gallery);
 const find = (id) => document.getElementById(id);
 const several = gallery.runs.length > 1;
-const quantities = QUANTITIES[gallery.kind];
+// Of a loop that resists twist there are more.
+const quantities = QUANTITIES[gallery.kind].filter(({ key }) => gallery.columns.includes(key));
 const load = quantities.find(({ key }) => key === gallery.load);
 let shown = null; // { curve, place }: place is the row's number in its run
 let film = null;

@@ -6,6 +6,8 @@ const QUANTITIES = {
   film: [
     { key: "kL3_alpha", label: "spring load kL³/α", symbol: "kL³/α", axis: "x" },
     { key: "sigma_hat", label: "tension σ̂", symbol: "σ̂", axis: "x" },
+    { key: "link", label: "link", symbol: "Lk", axis: "x" },
+    { key: "twist_ratio", label: "rigidities C/B", symbol: "C/B", axis: "x" },
     { key: "abs_kappa_n", label: "⟨|κₙ|⟩", axis: "y" },
     { key: "total_gauss_curvature", label: "⟨K⟩", axis: "y" },
     { key: "energy", label: "energy E", unit: "α/L", axis: "y" },

@@ -29,7 +29,7 @@ from pydantic import Field
 
 from eulerplateau.errors import SpecError
 from eulerplateau.runs.ensembles.cases import Case, case_name, spec_type
-from eulerplateau.runs.loads import Range, Refinement
+from eulerplateau.runs.loads import Refinement, SignedRange
 from eulerplateau.runs.spec import FILE_KEYS, at_home, leaves, located, override
 from eulerplateau.settings import Settings, read_toml, unknown_key, validate
 
@@ -158,7 +158,7 @@ def _values(key: str, given: Any) -> list[Any]:
 
 def _range(key: str, given: dict[str, Any]) -> list[Any]:
     """Return the values of a range, whole ones if it starts and steps by whole ones."""
-    values = validate(given, Range, f"grid.{key}").values()
+    values = validate(given, SignedRange, f"grid.{key}").values()
     whole = all(isinstance(given[name], int) for name in ("start", "step"))
     return [int(value) for value in values] if whole else list(values)
 

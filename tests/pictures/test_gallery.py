@@ -21,7 +21,7 @@ from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.folder import RunFolder, shape_name
 from eulerplateau.runs.record import read_run
-from eulerplateau.runs.rows import BranchRow, RatioRow, Row, TwistRow, columns
+from eulerplateau.runs.rows import BranchRow, RatioRow, TwistRow, columns
 from tests.helpers.command import run_here
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
 from tests.runs.test_output import ROW

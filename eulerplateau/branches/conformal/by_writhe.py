@@ -40,7 +40,7 @@ RIGID = 1e3
 CONTROL = StepControl(
     window=(-1.0, 2.0),
     unit=0.01,
-    first_step=1.0,
+    first_step=3.0,
     largest_step=4.0,
     smallest_step=1e-4,
     max_points=300,
@@ -53,15 +53,19 @@ _ROUND_HARMONICS = 32
 _AWAY = 0.02
 
 
-def films_by_writhe(load: float, narrowest: float = NARROWEST) -> Iterator[BranchPoint]:
+def films_by_writhe(
+    load: float, narrowest: float = NARROWEST, step: float = CONTROL.first_step
+) -> Iterator[BranchPoint]:
     """Yield films of rising writhe at a load, right-handed, of a rod of twist ratio RIGID.
+
+    The first step is `step` hundredths of a turn long, and so are most.
 
     They begin with the flat film of two lobes or, up to 48 pi^3, next to the disk, and end
     before the waist is narrower than `narrowest`, in L, or where harmonics do not resolve
     it any more. Each is of TWISTED, its lobes along x.
     """
     point = lobes_at(load) if load > BUCKLING else _beside_disk(load)
-    place: Place | None = Place(point, CONTROL.first_step, CONTROL.max_points)
+    place: Place | None = Place(point, step, CONTROL.max_points)
     while place is not None and waist(film_of(place.point)) > narrowest:
         yield place.point
         place = next_place(place, CONTROL, lambda before, after: False)

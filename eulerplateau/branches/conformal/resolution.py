@@ -14,13 +14,10 @@ from eulerplateau.branches.point import (
     correct,
     point_near,
 )
-from eulerplateau.exact.conformal import Basis, make_basis
+from eulerplateau.exact.conformal import BETTER, Basis, finer_bases
 
 # Films are refined until the last tenth of their harmonics is this small.
 TAIL = 1e-10
-_MOST_HARMONICS = 288
-_MOST_CROWDED = 1e-12
-_BETTER = 0.5  # a refinement that does not shrink the tail by this factor is dropped
 
 
 def tail(point: BranchPoint) -> float:
@@ -57,18 +54,8 @@ def in_basis(point: BranchPoint, basis: Basis, control: StepControl) -> BranchPo
 
 
 def _finer(point: BranchPoint, control: StepControl) -> Iterator[BranchPoint]:
-    """Yield the film in bases that are better: sharper ones first, which cost nothing."""
-    basis = smooth_family(point).basis
-    more = 8 * round(basis.harmonics / 6)
-    for harmonics, sharper in (
-        (basis.harmonics, 3),
-        (basis.harmonics, 10),
-        (more, 1),
-        (more, 4),
-    ):
-        crowding = basis.crowding / sharper
-        if harmonics > _MOST_HARMONICS or crowding < _MOST_CROWDED:
-            continue
-        found = in_basis(point, make_basis(harmonics, basis.family, crowding), control)
-        if found is not None and tail(found) < _BETTER * tail(point):
+    """Yield the film in bases that resolve it better."""
+    for basis in finer_bases(smooth_family(point).basis):
+        found = in_basis(point, basis, control)
+        if found is not None and tail(found) < BETTER * tail(point):
             yield found

@@ -8,9 +8,11 @@ from .basis import (
     make_basis as make_basis,
 )
 from .branch import (
+    BETTER as BETTER,
     BranchError as BranchError,
     BranchPoint as BranchPoint,
     change_basis as change_basis,
+    finer_bases as finer_bases,
     follow as follow,
     go_to_load as go_to_load,
     locate as locate,

@@ -9,7 +9,7 @@ import numpy as np
 
 from eulerplateau.errors import EulerPlateauError
 from eulerplateau.exact.checks import finite
-from eulerplateau.exact.conformal.basis import Family, make_basis
+from eulerplateau.exact.conformal.basis import Basis, Family, make_basis
 from eulerplateau.exact.conformal.equilibrium import (
     ConformalFilm,
     Direction,
@@ -27,7 +27,7 @@ _LOCATED = 1e-4  # largest eigenvalue taken for zero, over those at the neighbou
 _CLOSE = 1e-3  # distance from a load from which Newton's method lands on it
 _MOST_CROWDED = 1e-12
 _MOST_HARMONICS = 288
-_BETTER = 0.5  # a refinement that does not shrink the tail by this factor is dropped
+BETTER = 0.5  # a refinement that does not shrink the tail by this factor is dropped
 
 
 class BranchError(EulerPlateauError):
@@ -156,8 +156,6 @@ def resolve(
 ) -> BranchPoint:
     """Return the same film with a tail of at most `tail`, or the least that refining gives.
 
-    First the grading is sharpened, because that costs nothing, then harmonics are added.
-
     Parameters
     ----------
     tail : float
@@ -165,21 +163,35 @@ def resolve(
     most_harmonics : int
         More are not tried; the film may then keep a larger tail.
     """
-    for sharpen in (True, False):
-        while point.film.tail > tail:
-            basis = point.film.basis
-            crowding, harmonics = basis.crowding, basis.harmonics
-            if sharpen:
-                crowding /= 3
-            else:
-                harmonics = 8 * round(harmonics / 6)
-            if crowding < _MOST_CROWDED or harmonics > most_harmonics:
-                break
-            finer = change_basis(point, harmonics, crowding)
-            if finer is None or finer.film.tail > _BETTER * point.film.tail:
-                break
-            point = finer
+    while point.film.tail > tail:
+        found = (
+            change_basis(point, basis.harmonics, basis.crowding)
+            for basis in finer_bases(point.film.basis, most_harmonics)
+        )
+        most = BETTER * point.film.tail
+        better = (finer for finer in found if finer is not None and finer.film.tail < most)
+        finer = next(better, None)
+        if finer is None:
+            break
+        point = finer
     return point
+
+
+def finer_bases(basis: Basis, most_harmonics: int = _MOST_HARMONICS) -> Iterator[Basis]:
+    """Yield bases that may resolve a film better: sharper gradings, more harmonics, both.
+
+    Sharper ones first, because they cost nothing.
+    """
+    more = 8 * round(basis.harmonics / 6)
+    for harmonics, sharper in (
+        (basis.harmonics, 3),
+        (basis.harmonics, 10),
+        (more, 1),
+        (more, 4),
+    ):
+        crowding = basis.crowding / sharper
+        if harmonics <= most_harmonics and crowding >= _MOST_CROWDED:
+            yield make_basis(harmonics, basis.family, crowding)
 
 
 def change_basis(point: BranchPoint, harmonics: int, crowding: float) -> BranchPoint | None:

@@ -3,28 +3,38 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import ceil, copysign, pi
+from math import copysign, pi
+
+import numpy as np
 
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.checks import finite
 from eulerplateau.exact.conformal.basis import PLANAR, make_basis
-from eulerplateau.exact.conformal.branch import BranchPoint, go_to_load, resolve, switch
+from eulerplateau.exact.conformal.branch import (
+    BranchError,
+    BranchPoint,
+    go_to_load,
+    resolve,
+    switch,
+)
 from eulerplateau.exact.conformal.equilibrium import ConformalFilm, disk
 from eulerplateau.exact.conformal.second_variation import modes
 from eulerplateau.exact.planar import thresholds
 
 BUCKLING = 48 * pi**3
 _HARMONICS, _CROWDING = 64, 0.05
-_FIRST, _STEP = 1600.0, 100.0
+_FIRST = 1600.0
+# Part of the way to the lobes' contact that one stage is long: waists close like it.
+_PARTS = 15
 _SWITCHED = 0.02
-_TAIL = 1e-11
+_TAIL, _RESOLVED = 1e-11, 1e-8
 
 
 def two_lobes(load: float) -> ConformalFilm:
     """Return the planar film of two lobes at sigma_hat = load, refined to a tail of 1e-11.
 
     Raises SpecError unless the load lies between 48 pi^3, where the disk buckles, and
-    2602.98, where the lobes touch.
+    2602.98, where the lobes touch; BranchError close to that.
     """
     touching = thresholds(2).sigma_contact
     if not BUCKLING < finite("load", load) < touching:
@@ -32,10 +42,14 @@ def two_lobes(load: float) -> ConformalFilm:
         raise SpecError("load", problem)
     point = _first()
     way = point if load > point.load else point.reversed()
-    stages = ceil(abs(load - point.load) / _STEP)
-    for stage in range(stages):
-        target = load + (point.load - load) * (1 - 1 / (stages - stage))
+    while way.load != load:
+        room = (touching - way.load) / _PARTS
+        target = way.load + float(np.clip(load - way.load, -room, room))
         way = resolve(go_to_load(way, target), _TAIL)
+    if way.film.tail > _RESOLVED:
+        raise BranchError(
+            f"sigma_hat = {load:g} takes too many harmonics: waist too narrow"
+        )
     return way.film
 
 

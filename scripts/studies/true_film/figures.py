@@ -145,12 +145,13 @@ def draw_shapes(path: Path, films: dict[str, list[ConformalFilm]]) -> None:
     for number, (branch, load) in enumerate(_SHOWN, start=1):
         film = min(films[branch], key=lambda f: abs(f.load - load))
         ax: Any = figure.add_subplot(2, 3, number, projection="3d")
-        _draw_surface(ax, film)
+        draw_surface(ax, film)
         ax.set_title(rf"{branch}, $\hat\sigma={film.load:.0f}$", fontsize=10)
     save(figure, path)
 
 
-def _draw_surface(ax: Any, film: ConformalFilm) -> None:
+def draw_surface(ax: Any, film: ConformalFilm) -> None:
+    """Draw a film in space, its loop in front of it, at the scale of all of them."""
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     whole = surface(film)

@@ -52,7 +52,7 @@ def nature(load: float) -> tuple[float, float]:
 
 
 def flat_up_to(twist_ratio: float) -> float:
-    """Return the load up to which a rod welded straight stays flat; inf if it always does."""
+    """Return the load up to which a rod welded straight stays flat; inf if always."""
     window = (1856.0, 2450.0)
     if nature(window[1])[0] < twist_ratio:
         return inf

@@ -47,7 +47,7 @@ CONTROL = StepControl(
     least=-math.inf,
 )
 # Waist, in L, down to which films are followed.
-NARROWEST = 3e-3
+NARROWEST = 5e-3
 _ROUND_HARMONICS = 32
 # Size of the disk's critical mode, in its tangent, at which films that leave it begin.
 _AWAY = 0.02

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from math import inf, pi
+from math import pi
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from eulerplateau.branches.conformal import critical_moment
 from eulerplateau.exact.conformal import BUCKLING
@@ -51,11 +51,17 @@ def nature(load: float) -> tuple[float, float]:
     return ratio_at_no_writhe(first_rows(load))
 
 
+def hardest() -> tuple[float, float]:
+    """Return the C/B above which lobes stay flat at every load, and where that is asked."""
+    found = minimize_scalar(
+        lambda load: -nature(load)[0], bounds=(2220.0, 2420.0), options={"xatol": 0.05}
+    )
+    return float(-found.fun), float(found.x)
+
+
 def flat_up_to(twist_ratio: float) -> float:
-    """Return the load up to which a rod welded straight stays flat; inf if always."""
-    window = (1856.0, 2450.0)
-    if nature(window[1])[0] < twist_ratio:
-        return inf
+    """Return the load up to which a rod welded straight, of C/B below 0.48, stays flat."""
+    window = (1856.0, 2200.0)
     return float(brentq(lambda load: nature(load)[0] - twist_ratio, *window, xtol=1e-6))
 
 

@@ -23,8 +23,8 @@ _LOOKED_AT = 6
 # Writhe that is none.
 _FLAT = 1e-9
 LOADS = (
-    *(100.0, 500.0, 800.0, 1000.0, 1200.0, 1400.0, 1500.0, 1600.0, 1700.0, 1800.0),
-    *(1856.0, 1900.0, 2000.0, 2100.0, 2200.0, 2300.0, 2450.0),
+    *(100.0, 500.0, 1000.0, 1200.0, 1400.0, 1500.0, 1600.0, 1700.0),
+    *(1800.0, 1900.0, 2000.0, 2100.0, 2200.0, 2300.0),
 )
 
 
@@ -58,7 +58,7 @@ class Row:
 
 
 def rows_at(load: float) -> list[Row]:
-    """Return the films at a load, from flat to a waist of 0.003 L."""
+    """Return the films at a load, from flat to a waist of 0.005 L."""
     return [_row(point, number) for number, point in enumerate(films_by_writhe(load))]
 
 

@@ -139,9 +139,19 @@ def save(figure: Figure, path: Path) -> None:
         "svg.hashsalt": "eulerplateau",
         "path.simplify": False,
     }
+    _lay_out(figure)
     with rc_context(settings):
         figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
     write_whole(path, content.getvalue())
+
+
+def _lay_out(figure: Figure) -> None:
+    """Give a figure's parts the room they need; to do so matplotlib itself draws it once."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        figure.set_dpi(_DPI)
+        engine.execute(figure)
+        figure.set_layout_engine(None)
 
 
 def drawn(name: str, draw: Callable[[], None]) -> bool:

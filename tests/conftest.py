@@ -1,4 +1,7 @@
-"""Fixtures shared by the tests; everything here is made once."""
+"""Fixtures shared by the tests; everything here is made once.
+
+What they need is imported in them: the process that only hands tests to others reads this.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +9,13 @@ import gc
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
-# Loaded before the threads are counted: scipy brings a BLAS of its own.
-import scipy.linalg  # noqa: F401
-from threadpoolctl import threadpool_limits
-
-from eulerplateau.mesh import read_disk
-from eulerplateau.mesh.disk import Disk
-from eulerplateau.solvers.problem import Problem
-from tests.helpers import shapes
+if TYPE_CHECKING:
+    from eulerplateau.mesh.disk import Disk
+    from eulerplateau.solvers.problem import Problem
 
 ROOT = Path(__file__).parents[1]
 
@@ -52,6 +51,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture(scope="session", autouse=True)
 def _one_blas_thread() -> Iterator[None]:
     """Two threads that wait for each other slow small matrices down a hundredfold."""
+    # Loaded before the threads are counted: scipy brings a BLAS of its own.
+    import scipy.linalg  # noqa: F401
+    from threadpoolctl import threadpool_limits
+
     with threadpool_limits(1, user_api="blas"):
         yield
 
@@ -79,22 +82,30 @@ def coarse_pictures() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def elongated() -> Disk:
     """The stored mesh of the paper's first experiment."""
+    from eulerplateau.mesh import read_disk
+
     return read_disk(ROOT / "meshes" / "elongated.vtp")
 
 
 @pytest.fixture(scope="session")
 def hexagon() -> Disk:
     """The stored mesh of the paper's second experiment."""
+    from eulerplateau.mesh import read_disk
+
     return read_disk(ROOT / "meshes" / "hexagon.vtp")
 
 
 @pytest.fixture(scope="session")
 def oval() -> Disk:
     """127 vertices without any symmetry, once and a half as long as wide."""
+    from tests.helpers import shapes
+
     points, triangles = shapes.disk_points(6, jitter=0.2)
     return shapes.mesh_of(points * [1.5, 1.0], triangles)
 
 
 @pytest.fixture(scope="session")
 def oval_problem(oval: Disk) -> Problem:
+    from eulerplateau.solvers.problem import Problem
+
     return Problem(oval)

@@ -74,7 +74,7 @@ class Interval:
         return self.locate(partial(eigenvalue, index, 0.0))
 
     def nearly_zero(self, index: int, level: float, tries: int) -> bool:
-        """Whether an eigenvalue that changes sign is found, in so many tries, at `level`."""
+        """Whether an eigenvalue that changes sign is found at `level`, in so many tries."""
         near = self.locate(partial(eigenvalue, index, level), tries)
         return near is not None and abs(near.stability.eigenvalues[index]) <= level
 

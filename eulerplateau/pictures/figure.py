@@ -146,7 +146,7 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def _lay_out(figure: Figure) -> None:
-    """Give a figure's parts the room they need; to do so matplotlib itself draws it once."""
+    """Give a figure's parts the room they need; matplotlib itself draws it once for that."""
     engine = figure.get_layout_engine()
     if engine is not None:
         figure.set_dpi(_DPI)

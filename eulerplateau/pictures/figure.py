@@ -146,7 +146,7 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def _lay_out(figure: Figure) -> None:
-    """Give a figure's parts the room they need; matplotlib itself draws it once for that."""
+    """Give a figure's parts their room; matplotlib itself draws the figure for that."""
     engine = figure.get_layout_engine()
     if engine is not None:
         figure.set_dpi(_DPI)

@@ -9,7 +9,7 @@ import gc
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -23,21 +23,30 @@ ROOT = Path(__file__).parents[1]
 # again and again.
 gc.disable()
 
+# Files that ask one exploration, a few seconds' work: one process has them all.
+SHARING = ("test_exploration", "test_special", "test_continuation")
 # The longest files, so that on several cores none is left over at the end.
 LONGEST = (
-    "test_rod_balance",
     "test_docs",
+    *SHARING,
     "test_comparison",
-    "test_conjugate_gradient",
-    "test_main",
-    "test_scaling",
+    "test_extreme_area",
     "test_render",
-    "test_planar",
+    "test_extreme_loads",
+    "test_conjugate_gradient",
+    "test_scaling",
+    "test_generation",
+    "test_pictures",
+    "test_main",
+    "test_extreme_meshes",
+    "test_extreme_units",
+    "test_extreme_starts",
+    "test_shape",
+    "test_variants",
     "test_conformal_film",
     "test_soap_branches",
-    "test_exploration",
-    "test_generation",
-    "test_variants",
+    "test_rod_balance",
+    "test_planar",
 )
 
 
@@ -45,7 +54,21 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the longest files."""
     gc.freeze()
     gc.enable()
-    items.sort(key=lambda item: item.path.stem not in LONGEST)
+    order = {stem: place for place, stem in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get(item.path.stem, len(order)))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Hand out tests by files, and files that share something together."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class ByFiles(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            path = Path(super()._split_scope(nodeid))
+            return str(path.parent if path.stem in SHARING else path)
+
+    return ByFiles(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -1,4 +1,7 @@
-"""Fixtures shared by the tests; everything here is made once."""
+"""Fixtures shared by the tests; everything here is made once.
+
+What they need is imported in them: the process that only hands tests to others reads this.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +9,13 @@ import gc
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-# Loaded before the threads are counted: scipy brings a BLAS of its own.
-import scipy.linalg  # noqa: F401
-from threadpoolctl import threadpool_limits
-
-from eulerplateau.mesh import read_disk
-from eulerplateau.mesh.disk import Disk
-from eulerplateau.solvers.problem import Problem
-from tests.helpers import shapes
+if TYPE_CHECKING:
+    from eulerplateau.mesh.disk import Disk
+    from eulerplateau.solvers.problem import Problem
 
 ROOT = Path(__file__).parents[1]
 
@@ -24,21 +23,30 @@ ROOT = Path(__file__).parents[1]
 # again and again.
 gc.disable()
 
+# Files that ask one exploration, a few seconds' work: one process has them all.
+SHARING = ("test_exploration", "test_special", "test_continuation")
 # The longest files, so that on several cores none is left over at the end.
 LONGEST = (
-    "test_rod_balance",
     "test_docs",
+    *SHARING,
     "test_comparison",
-    "test_conjugate_gradient",
-    "test_main",
-    "test_scaling",
+    "test_extreme_area",
     "test_render",
-    "test_planar",
+    "test_extreme_loads",
+    "test_conjugate_gradient",
+    "test_scaling",
+    "test_generation",
+    "test_pictures",
+    "test_main",
+    "test_extreme_meshes",
+    "test_extreme_units",
+    "test_extreme_starts",
+    "test_shape",
+    "test_variants",
     "test_conformal_film",
     "test_soap_branches",
-    "test_exploration",
-    "test_generation",
-    "test_variants",
+    "test_rod_balance",
+    "test_planar",
 )
 
 
@@ -46,12 +54,30 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the longest files."""
     gc.freeze()
     gc.enable()
-    items.sort(key=lambda item: item.path.stem not in LONGEST)
+    order = {stem: place for place, stem in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get(item.path.stem, len(order)))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Hand out tests by files, and files that share something together."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class ByFiles(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            path = Path(super()._split_scope(nodeid))
+            return str(path.parent if path.stem in SHARING else path)
+
+    return ByFiles(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _one_blas_thread() -> Iterator[None]:
     """Two threads that wait for each other slow small matrices down a hundredfold."""
+    # Loaded before the threads are counted: scipy brings a BLAS of its own.
+    import scipy.linalg  # noqa: F401
+    from threadpoolctl import threadpool_limits
+
     with threadpool_limits(1, user_api="blas"):
         yield
 
@@ -79,22 +105,30 @@ def coarse_pictures() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def elongated() -> Disk:
     """The stored mesh of the paper's first experiment."""
+    from eulerplateau.mesh import read_disk
+
     return read_disk(ROOT / "meshes" / "elongated.vtp")
 
 
 @pytest.fixture(scope="session")
 def hexagon() -> Disk:
     """The stored mesh of the paper's second experiment."""
+    from eulerplateau.mesh import read_disk
+
     return read_disk(ROOT / "meshes" / "hexagon.vtp")
 
 
 @pytest.fixture(scope="session")
 def oval() -> Disk:
     """127 vertices without any symmetry, once and a half as long as wide."""
+    from tests.helpers import shapes
+
     points, triangles = shapes.disk_points(6, jitter=0.2)
     return shapes.mesh_of(points * [1.5, 1.0], triangles)
 
 
 @pytest.fixture(scope="session")
 def oval_problem(oval: Disk) -> Problem:
+    from eulerplateau.solvers.problem import Problem
+
     return Problem(oval)

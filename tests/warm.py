@@ -18,13 +18,13 @@ from tests.helpers import shapes
 
 def warm() -> None:
     """Solve for one film of each kind by each solver, for films without a mesh, a cell."""
-    mesh = shapes.mesh_of(*shapes.disk_points(8, jitter=0.1))
+    mesh = shapes.mesh_of(*shapes.disk_points(6, jitter=0.1))
     start = shapes.crumpled(mesh, 1e-2)
     films = Problem(mesh), Problem(mesh, "area"), Problem(mesh, "area", in_plane=True)
     for problem in films:
         for solver in SOLVERS:
-            solve(problem, 1000.0, start, solver=solver, max_iterations=20)
-    solve(Problem(mesh, twist_ratio=0.75, link=0.3), 500.0, start, max_iterations=20)
+            solve(problem, 1000.0, start, solver=solver, max_iterations=8)
+    solve(Problem(mesh, twist_ratio=0.75, link=0.3), 500.0, start, max_iterations=8)
     self_intersections(start, mesh.triangles)
     angle = 2 * np.pi * np.arange(200) / 200
     ellipse = np.stack([1.3 * np.cos(angle), np.sin(angle)], axis=1)

@@ -35,8 +35,12 @@ class Interval:
         fewer, more = sorted(ends, key=lambda end: end.n_unstable)
         return range(fewer.n_unstable + fewer.n_neutral, more.n_unstable)
 
-    def locate(self, test: Callable[[BranchPoint], float]) -> BranchPoint | None:
+    def locate(
+        self, test: Callable[[BranchPoint], float], tries: int | None = None
+    ) -> BranchPoint | None:
         """Return the point where `test(point)` vanishes; None if it is lost.
+
+        After so many `tries`, where they are limited, the nearest point so far.
 
         All points are corrected in hyperplanes normal to the direction at `before`, from
         a guess between known ones: at a bifurcation a point's own direction means nothing,
@@ -53,7 +57,13 @@ class Interval:
         try:
             if value(0.0) * value(reach) > 0:
                 return None
-            root = brentq(value, 0.0, reach, xtol=_PRECISION, rtol=8.9e-16)
+            root = brentq(
+                *(value, 0.0, reach),
+                xtol=_PRECISION,
+                rtol=8.9e-16,
+                maxiter=tries or 100,
+                disp=tries is None,
+            )
             value(root)
         except ArithmeticError:
             return None
@@ -61,7 +71,12 @@ class Interval:
 
     def zero(self, index: int) -> BranchPoint | None:
         """Return the point where an eigenvalue that changes sign does so; None if lost."""
-        return self.locate(partial(eigenvalue, index))
+        return self.locate(partial(eigenvalue, index, 0.0))
+
+    def nearly_zero(self, index: int, level: float, tries: int) -> bool:
+        """Whether an eigenvalue that changes sign is found at `level`, in so many tries."""
+        near = self.locate(partial(eigenvalue, index, level), tries)
+        return near is not None and abs(near.stability.eigenvalues[index]) <= level
 
     def rise(self, index: int) -> float:
         """Return by how much an eigenvalue rises, or falls, from one end to the other."""
@@ -102,11 +117,11 @@ def parameter_rate(level: float, point: BranchPoint) -> float:
     return 0.0 if abs(rate) <= level else rate
 
 
-def eigenvalue(index: int, point: BranchPoint) -> float:
-    """Return an eigenvalue, as zero where rounding decides its sign.
+def eigenvalue(index: int, level: float, point: BranchPoint) -> float:
+    """Return an eigenvalue, as zero up to `level` and where rounding decides its sign.
 
     Closer to a bifurcation than that the corrector would follow rounding along the mode.
     """
     found = point.stability
     value = float(found.eigenvalues[index])
-    return 0.0 if abs(value) <= found.error_bound else value
+    return 0.0 if abs(value) <= max(level, found.error_bound) else value

@@ -43,6 +43,8 @@ _IDLE = 1e-6
 # Part of an eigenvalue's change that it may be short of zero where it changes sign; and how
 # many times what rounding makes of it the change has to be.
 _LEAP, _CLEAR = 1e-5, 1e3
+# Secants after which one that does not leap is that near: two or three do.
+_SECANTS = 8
 # Relative difference of values below which two modes are lost together.
 _TOGETHER = 1e-6
 # Part of a pure change of the parameter that a direction may have and still count as level:
@@ -137,8 +139,7 @@ def leaps(before: BranchPoint, after: BranchPoint, control: StepControl) -> bool
         rise = interval.rise(index)
         if rise < _CLEAR * after.stability.error_bound:
             continue
-        point = interval.zero(index)
-        if point is None or abs(point.stability.eigenvalues[index]) > _LEAP * rise:
+        if not interval.nearly_zero(index, _LEAP * rise, _SECANTS):
             return True
     return False
 

@@ -139,9 +139,22 @@ def save(figure: Figure, path: Path) -> None:
         "svg.hashsalt": "eulerplateau",
         "path.simplify": False,
     }
+    _lay_out(figure, form)
     with rc_context(settings):
         figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
     write_whole(path, content.getvalue())
+
+
+def _lay_out(figure: Figure, form: str) -> None:
+    """Give a figure's parts their room in a format; matplotlib draws it once for that."""
+    from matplotlib.backend_bases import get_registered_canvas_class
+
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        get_registered_canvas_class(form)(figure)
+        figure.set_dpi(_DPI)
+        engine.execute(figure)
+        figure.set_layout_engine(None)
 
 
 def drawn(name: str, draw: Callable[[], None]) -> bool:

@@ -11,7 +11,6 @@ from typing import Any, cast
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import directors
 from eulerplateau.mesh.drawing import EYE, aligned, common_view
 from eulerplateau.pictures.alignment import settled_runs
 from eulerplateau.pictures.figure import ABS_KAPPA_N, MINUS_K, FieldLook, Portraits
@@ -100,7 +99,12 @@ def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
 
 def _marks(row: Row, x_loop: FloatArray) -> FloatArray | None:
     """Return which way a loop points that resists twist, so that one sees the twist."""
-    return None if row.twist is None else directors(x_loop, row.twist)
+    if row.twist is None:
+        return None
+    # Which loads what compiles loops.
+    from eulerplateau.loop import directors
+
+    return directors(x_loop, row.twist)
 
 
 _FIELDS = {

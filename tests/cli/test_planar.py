@@ -12,6 +12,7 @@ from click.testing import CliRunner
 from eulerplateau.cli.planar import planar
 from eulerplateau.errors import OutputError, SpecError
 from eulerplateau.exact.planar import LOBES, planar_film, thresholds
+from eulerplateau.pictures import figure
 from eulerplateau.pictures.planar import ENERGY, GALLERY
 
 
@@ -93,9 +94,13 @@ def test_wrong_arguments_end_with_two(arguments: list[str]) -> None:
     assert CliRunner().invoke(planar, arguments).exit_code == 2
 
 
-def test_figures_show_something_and_keep_clear_of_their_edges(tmp_path: Path) -> None:
+def test_figures_show_something_and_keep_clear_of_their_edges(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from matplotlib.image import imread
 
+    # With the pixels that users get, whatever other tests draw with.
+    monkeypatch.setattr(figure, "_DPI", 200)
     output("figures", "--out", str(tmp_path / "new" / "folder"))
     for name in (GALLERY, ENERGY):
         image = imread(tmp_path / "new" / "folder" / name)[..., :3]

@@ -51,7 +51,8 @@ def test_a_notebook_s_backend_is_not_asked_for(
 ) -> None:
     """Jupyter exports one that is not there elsewhere; others want a display."""
     out = tmp_path / "plot.png"
-    command = [sys.executable, "-m", "eulerplateau", "plot", str(sweep), "-o", str(out)]
+    words = ["plot", str(sweep), "-o", str(out), "--what", "curvature"]
+    command = [sys.executable, "-m", "eulerplateau", *words]
     environment = {**os.environ, "MPLBACKEND": backend}
     subprocess.run(command, env=environment, check=True)
     assert imread(out)[..., :3].std() > 0.05

@@ -21,13 +21,17 @@ BUCKLING, SADDLE = 48 * pi**3, 96 * pi**3
 
 
 @cache
-def planar(load: float, harmonics: int = 48, crowding: float = 0.02) -> BranchPoint:
-    """Return the planar film with two lobes along x, above 1489."""
+def _planar_at_1600() -> BranchPoint:
     round_film = disk(make_basis(48, PLANAR, 0.1), BUCKLING)
     mode = modes(round_film, PLANAR)[0]
     tip = mode.basis.curve(mode.coefficients).x[0, 0]
-    near = go_to_load(switch(round_film, mode, copysign(0.02, tip)), 1600.0)
-    point = change_basis(near, harmonics, crowding)
+    return go_to_load(switch(round_film, mode, copysign(0.02, tip)), 1600.0)
+
+
+@cache
+def planar(load: float, harmonics: int = 48, crowding: float = 0.02) -> BranchPoint:
+    """Return the planar film with two lobes along x, above 1489."""
+    point = change_basis(_planar_at_1600(), harmonics, crowding)
     assert point is not None
     return go_to_load(point if load > 1600 else point.reversed(), load)
 

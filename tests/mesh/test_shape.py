@@ -136,7 +136,7 @@ def test_where_drawing_crashes_one_is_told_what_to_install(
         assert shape._repr_png_() is None
     (record,) = caplog.records
     assert "apt-get install" in record.getMessage()
-    assert no_driver.read_text() == "x"  # found out once
+    assert no_driver.read_text() == "xx"  # the film's child, and one that finds out why
 
 
 @pytest.mark.parametrize(

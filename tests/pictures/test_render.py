@@ -64,7 +64,7 @@ def run(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
 DRAW = """
 import json, runpy, sys
 from eulerplateau.pictures.render import pictures
-pictures._WIDTH, pictures._FRAME_WIDTH, pictures._TURN_FRAMES = 600, 400, 24
+pictures._WIDTH, pictures._FRAME_WIDTH, pictures._TURN_FRAMES = 600, 280, 24
 for sys.argv[1:] in json.loads(sys.argv[1]):
     runpy.run_module("eulerplateau.pictures.render", run_name="__main__")
 """
@@ -79,8 +79,8 @@ def again(run: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def drawn(run: Path, again: Path) -> Path:
-    """The pictures of every kind, drawn by one child."""
+def child(run: Path, again: Path) -> subprocess.CompletedProcess[bytes]:
+    """The child that draws pictures of every kind, without a display."""
     wanted = [
         (run, STILLS, "sides", EVERY),
         (run, STILLS, "soap", BOTH),
@@ -93,8 +93,18 @@ def drawn(run: Path, again: Path) -> Path:
     calls = [
         [str(to), kind, colour, *map(str, steps)] for to, kind, colour, steps in wanted
     ]
-    subprocess.run([sys.executable, "-c", DRAW, json.dumps(calls)], check=True)
+    command = [sys.executable, "-c", DRAW, json.dumps(calls)]
+    return subprocess.run(command, env=without_display(), capture_output=True, check=True)
+
+
+@pytest.fixture(scope="module")
+def drawn(run: Path, child: subprocess.CompletedProcess[bytes]) -> Path:
+    """The pictures of every kind."""
     return run / "pictures"
+
+
+def without_display() -> dict[str, str]:
+    return {key: value for key, value in os.environ.items() if key != "DISPLAY"}
 
 
 def read(path: Path) -> Image:
@@ -248,23 +258,18 @@ def test_displacement_from_frame_to_frame_is_proportional_to_the_step(
     )
 
 
-@pytest.mark.parametrize("notebook", [False, True])
-def test_the_child_says_nothing_without_a_display(run: Path, notebook: bool) -> None:
-    """VTK complains that there is no X server before it finds that it needs none.
+def test_the_child_says_nothing_without_a_display(
+    child: subprocess.CompletedProcess[bytes],
+) -> None:
+    """VTK complains that there is no X server before it finds that it needs none."""
+    assert child.stdout == child.stderr == b""
 
-    Nor does it mind the matplotlib backend of a notebook, which is not there elsewhere.
-    """
-    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-    if notebook:
-        environment["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
-    command = [
-        sys.executable,
-        "-m",
-        "eulerplateau.pictures.render",
-        str(run),
-        STILLS,
-        "sides",
-        "0",
-    ]
+
+def test_the_child_does_not_mind_the_backend_of_a_notebook(run: Path) -> None:
+    """Of matplotlib, which is not there elsewhere; nor does it say a word."""
+    environment = without_display()
+    environment["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
+    module = [sys.executable, "-m", "eulerplateau.pictures.render"]
+    command = [*module, str(run), STILLS, "sides", "0"]
     child = subprocess.run(command, env=environment, capture_output=True, check=True)
     assert child.stdout == child.stderr == b""

@@ -41,6 +41,7 @@ def test_sweep_with_unresolved_rows_ends_with_4_and_a_line_for_each(
     assert all(row.max_turning > 30 for row in rows)
 
 
+@pytest.mark.usefixtures("coarse_pictures")
 def test_branches_with_unresolved_points_end_with_4_and_one_line_for_all(
     folder: Path,
 ) -> None:

@@ -81,6 +81,16 @@ class Basis:
         n = _POINTS * self.harmonics
         return 2 * pi * np.arange(n) / n
 
+    @cached_property
+    def theta(self) -> FloatArray:
+        """The conformal angle (n,) at the points of the grid."""
+        return self.grading.theta(self.phi)
+
+    @cached_property
+    def rate(self) -> FloatArray:
+        """Its derivative (n,) by phi."""
+        return self.grading.rate(self.phi)
+
     @property
     def weight(self) -> float:
         """Integral weight of every point of the grid."""
@@ -156,7 +166,10 @@ class Basis:
         return Curve(x, x1, x2)
 
     def project(self, x: FloatArray) -> FloatArray:
-        """Return the coefficients (size,) of values (n, 3) at the grid, least squares."""
+        """Return the coefficients (size, ...) of values (n, 3, ...), least squares.
+
+        The values are at the points of the grid.
+        """
         scale = 2 / len(self.phi)
         columns = zip(self.matrices, range(3), strict=True)
         return np.concatenate([scale * (m[0].T @ x[:, axis]) for m, axis in columns])

@@ -16,6 +16,7 @@ from eulerplateau.exact.conformal.equilibrium import (
     branch_direction,
     correct,
     inner,
+    newton,
 )
 from eulerplateau.exact.conformal.second_variation import Mode, modes
 
@@ -90,12 +91,13 @@ def advance(point: BranchPoint, step: float) -> BranchPoint | None:
     film, direction = point.film, point.direction
     guess = film.coefficients + step * direction.coefficients
     load = film.load + step * direction.load
-    found = correct(film.basis, guess, film.beta, load, direction, _HARD)
+    found = newton(film.basis, guess, film.beta, load, direction, _HARD)
     if found is None:
         return None
-    ahead = branch_direction(found, direction)
+    there, system = found
+    ahead = system.direction(film.basis)
     straight = inner(film.basis, direction, ahead) >= _STRAIGHT
-    return BranchPoint(found, ahead) if straight else None
+    return BranchPoint(there, ahead) if straight else None
 
 
 def go_to_load(

@@ -106,7 +106,7 @@ def inner(basis: Basis, a: Direction, b: Direction) -> float:
 
 def disk(basis: Basis, load: float) -> ConformalFilm:
     """Return the flat disk at sigma_hat = load."""
-    theta, radius = basis.grading.theta(basis.phi), 1 / (2 * pi)
+    theta, radius = basis.theta, 1 / (2 * pi)
     x = radius * np.stack([np.cos(theta), np.sin(theta), 0 * theta], axis=-1)
     beta = radius**-2 - load * radius
     found = correct(basis, basis.project(x), beta, load)
@@ -128,13 +128,26 @@ def correct(
     With `normal`, in the hyperplane through guess and load normal to it, else at the load.
     None if `limit` steps of Newton's method do not lead to one.
     """
+    found = newton(basis, guess, beta, load, normal, limit)
+    return None if found is None else found[0]
+
+
+def newton(
+    basis: Basis,
+    guess: FloatArray,
+    beta: float,
+    load: float,
+    normal: Direction | None,
+    limit: int,
+) -> tuple[ConformalFilm, NewtonSystem] | None:
+    """Return what `correct` does, with the linear system there."""
     start, c, best = Direction(guess, load), guess, np.inf
     for corrections in range(limit):
         system = NewtonSystem.at(basis, c, beta, load, normal)
         residual = system.residual
         stuck = 0.5 * best < residual < _STUCK
         if residual < _SETTLED or stuck:
-            return _film(basis, c, beta, load, residual, corrections)
+            return _film(basis, c, beta, load, residual, corrections), system
         if not np.isfinite(residual):
             return None
         best = min(best, residual)
@@ -205,15 +218,19 @@ class NewtonSystem:
             return np.full(len(self.scale), np.nan), np.nan, np.nan
         return self.scale * step[:-2], float(step[-2]), LOAD_UNIT * float(step[-1])
 
+    def direction(self, basis: Basis) -> Direction:
+        """Return the direction in which films go on, the way of the border."""
+        step, _, load = self.solve(np.zeros(basis.size), 0.0, -1.0)
+        found = Direction(step, load)
+        size = float(np.sqrt(inner(basis, found, found)))
+        return Direction(step / size, load / size)
+
 
 def branch_direction(film: ConformalFilm, last: Direction | None) -> Direction:
     """Return a branch's direction at a film, the way of `last` or to higher loads."""
     basis = film.basis
     system = NewtonSystem.at(basis, film.coefficients, film.beta, film.load, last)
-    step, _, load = system.solve(np.zeros(basis.size), 0.0, -1.0)
-    found = Direction(step, load)
-    size = float(np.sqrt(inner(basis, found, found)))
-    return Direction(step / size, load / size)
+    return system.direction(basis)
 
 
 def lagrangian_hessian(basis: Basis, curve: Curve, beta: float, load: float) -> FloatArray:
@@ -236,22 +253,18 @@ def gauge_modes(basis: Basis, curve: Curve) -> FloatArray:
     cos theta, sin theta), those that have the symmetry of `basis`, which need not be the
     curve's: each has it or is orthogonal to it. Two coincide for the disk.
     """
-    theta, rate = basis.grading.theta(basis.phi), basis.grading.rate(basis.phi)
-    x_theta = curve.x1 / rate[:, None]
-    fields = [np.cross(axis, curve.x) for axis in np.eye(3)]
-    fields += [
-        x_theta * factor[:, None]
-        for factor in (1 + 0 * theta, np.cos(theta), np.sin(theta))
-    ]
-    found = []
-    for field in fields:
-        inside = basis.project(field)
-        whole = (2 / len(theta)) * float(((field - field.mean(axis=0)) ** 2).sum())
-        if inside @ inside > 0.5 * whole:
-            found.append(inside / np.linalg.norm(inside))
-    if not found:
+    theta, n = basis.theta, len(basis.phi)
+    x_theta = curve.x1 / basis.rate[:, None]
+    turned = np.cross(np.eye(3)[:, None], curve.x)
+    factors = np.stack([np.ones(n), np.cos(theta), np.sin(theta)])
+    fields = np.concatenate([turned, factors[:, :, None] * x_theta]).transpose(1, 2, 0)
+    inside = basis.project(fields)
+    whole = (2 / n) * np.square(fields - fields.mean(axis=0)).sum(axis=(0, 1))
+    sizes = np.square(inside).sum(axis=0)
+    found = (inside / np.sqrt(sizes + 1e-300))[:, sizes > 0.5 * whole]
+    if not found.size:
         return np.zeros((basis.size, 0))
-    directions, sizes, _ = np.linalg.svd(np.array(found).T, full_matrices=False)
+    directions, sizes, _ = np.linalg.svd(found, full_matrices=False)
     return directions[:, sizes > _SAME * sizes[0]].astype(np.float64)
 
 

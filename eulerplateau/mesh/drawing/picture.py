@@ -60,7 +60,8 @@ def draw_film(
     triangles : (n_t, 3) int
     loop : (n_b,) int, cyclic
     """
-    check_drawing()
+    if _failure_of_drawing.cache_info().currsize:  # another film has failed before
+        check_drawing()
     try:
         with TemporaryDirectory(prefix="eulerplateau-") as folder:
             content = pickle.dumps((x, triangles, loop, dict(options)))
@@ -69,6 +70,7 @@ def draw_film(
             patience = None if window else _PATIENCE
             failure = failure_of_child(_CHILD, *arguments, timeout=patience)
             if failure:
+                check_drawing()
                 raise SpecError("plot", f"this film cannot be drawn: {failure}")
             return Picture(Path(folder, "film.png").read_bytes())
     except OSError as error:

@@ -34,6 +34,7 @@ from scripts.studies.welded_loop.meshes import (
     richardson,
     twisted_film,
 )
+from scripts.studies.welded_loop.starts import cases, run, tabulated
 
 DISK_LOADS = (
     50.0,
@@ -62,9 +63,11 @@ def main(out: Path) -> None:
     out.mkdir(parents=True, exist_ok=True)
     with processes() as pool:
         curves = dict(zip(LOADS, pool.map(rows_at, LOADS), strict=True))
+        ends = list(pool.map(run, cases(), chunksize=5))
     with threadpool_limits(1):
         for head, table in _tables(curves):
             click.echo(f"{head}\n\n{table}")
+        click.echo(f"Random starts\n\n{markdown_table(tabulated(ends, curves), 1)}")
         numbers = _numbers()
     click.echo(json.dumps(numbers, indent=2))
     (out / "welded_loop.json").write_text(json.dumps(numbers, indent=2) + "\n")

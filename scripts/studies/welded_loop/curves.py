@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, pairwise
 from math import pi
 
 import numpy as np
@@ -119,16 +119,12 @@ def stable_links(rows: list[Row], twist_ratio: float) -> list[tuple[float, float
     return [(min(part), max(part)) for part in ranges]
 
 
-def at_link(rows: list[Row], twist_ratio: float, link: float) -> dict[str, float] | None:
-    """Return writhe, energy and waist of the last stable film at a link; None if none."""
-    for before, after in zip(rows[-2::-1], rows[::-1], strict=False):
+def widest_at(rows: list[Row], twist_ratio: float, link: float) -> float:
+    """Return the widest waist of a stable film at a link; 0 if there is none."""
+    widest = 0.0
+    for before, after in pairwise(rows):
         low, high = before.link(twist_ratio), after.link(twist_ratio)
-        if low <= link <= high and twist_ratio > max(before.ratio, after.ratio):
-            share = (link - low) / (high - low)
-            named = {
-                "writhe": (before.writhe, after.writhe),
-                "energy": (before.total(twist_ratio), after.total(twist_ratio)),
-                "waist": (before.waist, after.waist),
-            }
-            return {name: a + share * (b - a) for name, (a, b) in named.items()}
-    return None
+        stable = twist_ratio > max(before.ratio, after.ratio)
+        if stable and low <= link <= high:
+            widest = max(widest, before.waist, after.waist)
+    return widest

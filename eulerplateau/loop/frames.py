@@ -7,11 +7,69 @@ is the same everywhere: together, round the loop, by what it was given before it
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.loop import differences
 from eulerplateau.loop.writhe_kernels import transported
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The material frame of a rod along a loop, in the middle of each edge.
+
+    Attributes
+    ----------
+    x : (n, 3) float, the loop
+    turns : float, the whole twist: link less writhe
+    tangents, directors : (n, 3) float, t and d1, unit vectors
+    twists : (n,) float
+        The angle that d1 turns by at the vertex after each edge, beyond what it must; after
+        the last edge, at the weld, that with which it goes on as it began. Right-handed is
+        positive.
+    """
+
+    x: FloatArray
+    turns: float
+    tangents: FloatArray
+    directors: FloatArray
+    twists: FloatArray
+
+    @classmethod
+    def even(cls, x: FloatArray, turns: float) -> Frame:
+        """Return the frame of a rod whose twist is the same everywhere."""
+        edges = differences(x)
+        lengths = np.linalg.norm(edges, axis=1)
+        means = 0.5 * (lengths + np.roll(lengths, -1))
+        tangents = edges / lengths[:, None]
+        twists = 2 * np.pi * turns * means / lengths.sum()
+        return cls(x, turns, tangents, directors(x, turns), twists)
+
+    @property
+    def second(self) -> FloatArray:
+        """The directors d2 = t x d1 (n, 3)."""
+        return np.cross(self.tangents, self.directors)
+
+    def turned(self, angles: FloatArray) -> Frame:
+        """Return the frame turned about each edge by angles (n,)."""
+        twists = self.twists + np.roll(angles, -1) - angles
+        turn = angles[:, None]
+        found = np.cos(turn) * self.directors + np.sin(turn) * self.second
+        return Frame(self.x, self.turns, self.tangents, found, twists)
+
+    def angles_to(self, other: Frame) -> FloatArray:
+        """Return the angles (n,) that turn it into a frame of a loop near by.
+
+        That is carried here without turning it about its edges. They are continuous along
+        the loop, the first between -pi and pi.
+        """
+        t, u = other.tangents, self.tangents
+        along = (other.directors * u).sum(axis=1) / (1 + (t * u).sum(axis=1))
+        carried = other.directors - along[:, None] * (t + u)
+        sine, cosine = (self.second * carried).sum(axis=1), self.directors * carried
+        return np.unwrap(np.arctan2(sine, cosine.sum(axis=1)))
 
 
 def directors(x: FloatArray, twist: float) -> FloatArray:

@@ -71,6 +71,11 @@ class Term(ABC):
 class OwnTerm(Term):
     """What a loop's own energy has beside its bending: that of its twist."""
 
+    @property
+    def slides(self) -> bool:
+        """Whether a loop slides along itself for nothing, as far as the term knows."""
+        return True
+
     @abstractmethod
     def energy(self, x: FloatArray) -> float:
         """Return the energy of a loop (n, 3)."""

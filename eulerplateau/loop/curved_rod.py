@@ -21,7 +21,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.frame_curvature import FrameCurvature
+from eulerplateau.loop.bend_kernels import bend, bend_twice
 from eulerplateau.loop.frame_kernels import settle
 from eulerplateau.loop.frames import Frame
 from eulerplateau.loop.loop import Loop, backward_differences, differences
@@ -121,20 +121,26 @@ class CurvedRod(OwnTerm):
 
     def _best_turn(self, even: Frame) -> FloatArray:
         """Return the angle by which a frame is best turned as a whole, for each edge."""
-        cosines, sines = (self.natural * pull.sum() for pull in FrameCurvature(even).pulls)
-        return np.full(len(even.x), math.atan2(sines, cosines))
+        _, cosines, sines, _ = bend(even.tangents, even.lengths, even.directors)
+        turn = math.atan2(self.natural * sines.sum(), self.natural * cosines.sum())
+        return np.full(len(even.x), turn)
 
     def _settled(self, even: Frame, angles: FloatArray) -> Frame:
         """Return the frame at rest that turning an even one by angles (n,) leads to."""
-        pulls = [-2 * self.natural * pull for pull in FrameCurvature(even).pulls]
+        pulls = self._pulls(even)
         rough = self._lowered(pulls, even.twists, angles)
         rough -= 2 * math.pi * round(rough[0] / (2 * math.pi))
         return even.turned(
             self._lowered(pulls, even.twists, _GRID * np.round(rough / _GRID))
         )
 
+    def _pulls(self, frame: Frame) -> tuple[FloatArray, FloatArray]:
+        """Return what multiplies cosines and sines (n,) of its turns in the energy."""
+        _, cosines, sines, _ = bend(frame.tangents, frame.lengths, frame.directors)
+        return -2 * self.natural * cosines, -2 * self.natural * sines
+
     def _lowered(
-        self, pulls: list[FloatArray], twists: FloatArray, angles: FloatArray
+        self, pulls: tuple[FloatArray, FloatArray], twists: FloatArray, angles: FloatArray
     ) -> FloatArray:
         """Return the angles (n,) of least energy that these lead down to."""
         found = angles.copy()
@@ -170,9 +176,8 @@ class CurvedRod(OwnTerm):
 
     def _energy(self, frame: Frame) -> float:
         length = float(self.loop.rest_lengths.sum())
-        bending = self.natural * (
-            self.natural * length - 2 * FrameCurvature(frame).value
-        )
+        bent = bend(frame.tangents, frame.lengths, frame.directors)[0]
+        bending = self.natural * (self.natural * length - 2 * bent)
         return bending + 0.5 * float(self.springs @ frame.twists**2)
 
     def columns(self, x: FloatArray) -> Mapping[str, float]:
@@ -201,16 +206,14 @@ class CurvedRod(OwnTerm):
         return self._force(self.frame(x))
 
     def _force(self, frame: Frame) -> FloatArray:
-        bending = -2 * self.natural * FrameCurvature(frame).by_edges()
+        bent = bend(frame.tangents, frame.lengths, frame.directors)[3]
         twist = writhe_by_edges(differences(frame.x), self.springs * frame.twists)
-        return -backward_differences(bending - 2 * math.pi * twist)
+        return backward_differences(2 * self.natural * bent + 2 * math.pi * twist)
 
     def hessian(self, x: FloatArray) -> FloatArray:
         """Return E_xx - E_xpsi E_psipsi^-1 E_psix (3 n, 3 n), psi the frame's angles."""
         frame, n = self.frame(x), len(x)
-        own, beside = (
-            -2 * self.natural * part for part in FrameCurvature(frame).by_edges_twice()
-        )
+        own, beside, *_ = self._second(frame)
         shares = -2 * math.pi * self.springs * frame.twists
         of_twist = writhe_second(differences(x), shares)
         first, then = _twist_slopes(frame)
@@ -225,9 +228,14 @@ class CurvedRod(OwnTerm):
         whole -= given.T @ given
         return whole
 
+    def _second(self, frame: Frame) -> list[FloatArray]:
+        """Return what the natural curvature adds to second derivatives: see bend_twice."""
+        parts = bend_twice(frame.tangents, frame.lengths, frame.directors)
+        return [-2 * self.natural * part for part in parts]
+
     def _root(self, frame: Frame) -> FloatArray:
         """Return a lower triangular R (n, n) with R R^T the frame's own stiffness."""
-        matrix = self._chain(2 * self.natural * FrameCurvature(frame).pulls[0])
+        matrix = self._chain(-self._pulls(frame)[0])
         try:
             root: FloatArray = cholesky(matrix, lower=True)
         except LinAlgError:
@@ -239,19 +247,15 @@ class CurvedRod(OwnTerm):
     def _mixed(self, frame: Frame) -> FloatArray:
         """Return the second derivative (n, 3 n) by the frame's angles and positions."""
         n = len(frame.x)
-        before, own, after = (
-            -2 * self.natural * part
-            for part in FrameCurvature(frame).by_angles_and_edges()
-        )
+        *_, before, own, after = self._second(frame)
         first, then = (self.springs[:, None] * part for part in _twist_slopes(frame))
         i = np.arange(n)
         by_edges = np.zeros((n, n, 3))
         by_edges[i, i - 1] += before + np.roll(first, 1, axis=0)
         by_edges[i, i] += own + np.roll(then, 1, axis=0) - first
         by_edges[i, (i + 1) % n] += after - then
-        return np.ascontiguousarray(
-            np.roll(by_edges, 1, axis=1) - by_edges
-        ).reshape(n, 3 * n)
+        by_x: FloatArray = np.roll(by_edges, 1, axis=1) - by_edges
+        return by_x.reshape(n, 3 * n)
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the energy at x + step less that at x, as precise as the difference.
@@ -265,18 +269,17 @@ class CurvedRod(OwnTerm):
             raise LinAlgError("a strand of the loop would pass through another")
         frame, work = before, 0.0
         for place, share in zip(*np.polynomial.legendre.leggauss(8), strict=True):
-            frame = self._carried(frame, x + 0.5 * (1 + place) * step)
+            frame = self._at_rest(frame.carried(x + 0.5 * (1 + place) * step))
             work += 0.5 * share * float(np.vdot(step, self._force(frame)))
         size = self.gamma * (2 * math.pi) ** 2 + 4 * math.pi * abs(self.natural)
         if abs(self._energy(then) - self._energy(before) - work) > _JUMPED * size:
             raise LinAlgError("the rod's frame would jump")
         return work
 
-    def _carried(self, frame: Frame, x: FloatArray) -> Frame:
-        """Return the frame at rest on a loop close by, the writhe known by the way there."""
-        gained = tangent_area(differences(frame.x), differences(x)) / (2 * math.pi)
-        even = Frame.even(x, frame.turns - gained)
-        return self._settled(even, even.angles_to(frame))
+    def _at_rest(self, frame: Frame) -> Frame:
+        """Return the frame that this one leads down to, but for its last digits."""
+        start = np.zeros(len(frame.x))
+        return frame.turned(self._lowered(self._pulls(frame), frame.twists, start))
 
     def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
         """Return the derivative of the force (n, 3) by one of the rod's numbers.
@@ -295,9 +298,8 @@ class CurvedRod(OwnTerm):
                 )
             case "rest_curvature":
                 rate = -4 * math.pi / float(self.loop.rest_lengths.sum())
-                curvature = FrameCurvature(frame)
-                held = -backward_differences(rate * curvature.by_edges())
-                turned = rate * curvature.pulls[1]
+                parts = bend(frame.tangents, frame.lengths, frame.directors)
+                held, turned = -backward_differences(rate * parts[3]), rate * parts[2]
             case _:
                 return None
         root, mixed = self._root(frame), self._mixed(frame)
@@ -325,7 +327,7 @@ class CurvedRod(OwnTerm):
 def _twist_slopes(frame: Frame) -> tuple[FloatArray, FloatArray]:
     """Return how each twist (n, 3) changes with the edge before it, and with that after."""
     t, u = frame.tangents, np.roll(frame.tangents, -1, axis=0)
-    lengths = np.linalg.norm(differences(frame.x), axis=1)[:, None]
+    lengths = frame.lengths[:, None]
     binormals = np.cross(t, u) / (1 + (t * u).sum(axis=1))[:, None]
     return binormals / lengths, binormals / np.roll(lengths, -1, axis=0)
 

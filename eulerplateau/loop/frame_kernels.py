@@ -5,7 +5,8 @@ Turned by angles psi_i about their edges they have the energy
     sum_i p_i cos psi_i + q_i sin psi_i + (1/2) sum_i c_i (m_i + psi_{i+1} - psi_i)^2,
 
 the first of a natural curvature that wants to lie in the plane of the loop's own, the
-second of twist, a chain of springs that is closed.
+second of twist, a chain of springs that is closed. How a frame is carried to a loop near
+by, without turning about its edges, is here too.
 """
 
 from __future__ import annotations
@@ -117,3 +118,19 @@ def _slope(
         slope[i] = turned + before - moment
         before = moment
     return slope
+
+
+@njit(cache=True)
+def carried(before: FloatArray, after: FloatArray, directors: FloatArray) -> FloatArray:
+    """Return directors (n, 3) carried to other tangents without turning about them.
+
+    before, after : (n, 3) float, unit tangents, none of them turned back
+    """
+    found = np.empty_like(directors)
+    for i in range(len(directors)):
+        t, u, d = before[i], after[i], directors[i]
+        along = d[0] * u[0] + d[1] * u[1] + d[2] * u[2]
+        width = 1 + t[0] * u[0] + t[1] * u[1] + t[2] * u[2]
+        for k in range(3):
+            found[i, k] = d[k] - along * (t[k] + u[k]) / width
+    return found

@@ -7,13 +7,14 @@ is the same everywhere: together, round the loop, by what it was given before it
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.loop.frame_kernels import carried
 from eulerplateau.loop.loop import differences
-from eulerplateau.loop.writhe_kernels import transported
+from eulerplateau.loop.writhe_kernels import tangent_areas, transported
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class Frame:
     x : (n, 3) float, the loop
     turns : float, the whole twist: link less writhe
     tangents, directors : (n, 3) float, t and d1, unit vectors
+    lengths : (n,) float, of the edges
     twists : (n,) float
         The angle that d1 turns by at the vertex after each edge, beyond what it must; after
         the last edge, at the weld, that with which it goes on as it began. Right-handed is
@@ -34,6 +36,7 @@ class Frame:
     x: FloatArray
     turns: float
     tangents: FloatArray
+    lengths: FloatArray
     directors: FloatArray
     twists: FloatArray
 
@@ -45,7 +48,7 @@ class Frame:
         means = 0.5 * (lengths + np.roll(lengths, -1))
         tangents = edges / lengths[:, None]
         twists = 2 * np.pi * turns * means / lengths.sum()
-        return cls(x, turns, tangents, directors(x, turns), twists)
+        return cls(x, turns, tangents, lengths, directors(x, turns), twists)
 
     @property
     def second(self) -> FloatArray:
@@ -54,22 +57,33 @@ class Frame:
 
     def turned(self, angles: FloatArray) -> Frame:
         """Return the frame turned about each edge by angles (n,)."""
-        twists = self.twists + np.roll(angles, -1) - angles
         turn = angles[:, None]
         found = np.cos(turn) * self.directors + np.sin(turn) * self.second
-        return Frame(self.x, self.turns, self.tangents, found, twists)
+        twists = self.twists + np.roll(angles, -1) - angles
+        return replace(self, directors=found, twists=twists)
+
+    def carried(self, x: FloatArray) -> Frame:
+        """Return the frame on a loop near by, carried there without turning about edges.
+
+        What twist it gains is the area that the tangents lose on the way.
+        """
+        edges = differences(x)
+        lengths = np.linalg.norm(edges, axis=1)
+        tangents = edges / lengths[:, None]
+        gained = tangent_areas(self.tangents, tangents).sum(axis=1)
+        turns = self.turns - float(gained.sum()) / (2 * np.pi)
+        found = carried(self.tangents, tangents, self.directors)
+        return Frame(x, turns, tangents, lengths, found, self.twists - gained)
 
     def angles_to(self, other: Frame) -> FloatArray:
         """Return the angles (n,) that turn it into a frame of a loop near by.
 
-        That is carried here without turning it about its edges. They are continuous along
-        the loop, the first between -pi and pi.
+        That is carried here. They are continuous along the loop, the first between -pi and
+        pi.
         """
-        t, u = other.tangents, self.tangents
-        along = (other.directors * u).sum(axis=1) / (1 + (t * u).sum(axis=1))
-        carried = other.directors - along[:, None] * (t + u)
-        sine, cosine = (self.second * carried).sum(axis=1), self.directors * carried
-        return np.unwrap(np.arctan2(sine, cosine.sum(axis=1)))
+        found = carried(other.tangents, self.tangents, other.directors)
+        sines, cosines = (self.second * found).sum(axis=1), self.directors * found
+        return np.unwrap(np.arctan2(sines, cosines.sum(axis=1)))
 
 
 def directors(x: FloatArray, twist: float) -> FloatArray:

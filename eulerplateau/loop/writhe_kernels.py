@@ -75,13 +75,22 @@ def writhe(x: FloatArray) -> float:
 @njit(cache=True)
 def tangent_area(before: FloatArray, after: FloatArray) -> float:
     """Return the area that the tangents of a polygon gain as its edges (n, 3) turn."""
-    n = before.shape[0]
     total = 0.0
+    for area in tangent_areas(before, after).flat:
+        total += area
+    return total
+
+
+@njit(cache=True)
+def tangent_areas(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Return the parts of that at the vertex after each edge: of two triangles (n, 2)."""
+    n = before.shape[0]
+    areas = np.empty((n, 2))
     for i in range(n):
         j = (i + 1) % n
-        total += _solid_angle(before[i], after[j], before[j])
-        total += _solid_angle(before[i], after[i], after[j])
-    return total
+        areas[i, 0] = _solid_angle(before[i], after[j], before[j])
+        areas[i, 1] = _solid_angle(before[i], after[i], after[j])
+    return areas
 
 
 @njit(cache=True)

@@ -4,8 +4,7 @@
     energy.py    an energy as a sum of terms, with its constraint and its free motions:
                  write another `Term` (term.py) in a file of its own to add to the physics
     twist.py     of a rod that was turned before it was welded, by its writhe
-    curved_rod.py  and that is curved by nature: its frame is at rest, and gives way;
-                 frame_curvature.py, how far the loop bends the way that points
+    curved_rod.py  of one that is curved by nature; framed.py, how its frame gives way
     rod.py       which of these a loop has, by the numbers that one gives
     frames.py    which way its cross-sections point
     bending.py   the bending term, and the energy of a loop that keeps its lengths

@@ -170,7 +170,7 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
 
 @njit(cache=True)
 def _keep_across(row: FloatArray, t: FloatArray, length: float) -> None:
-    """Take from a derivative (3,) by a tangent what is along it; make it one by the edge."""
+    """Make a derivative (3,) by a tangent one by the edge: nothing along it counts."""
     along = _dot(row, t)
     for k in range(3):
         row[k] = (row[k] - along * t[k]) / length

@@ -134,3 +134,16 @@ def carried(before: FloatArray, after: FloatArray, directors: FloatArray) -> Flo
         for k in range(3):
             found[i, k] = d[k] - along * (t[k] + u[k]) / width
     return found
+
+
+@njit(cache=True)
+def turned(tangents: FloatArray, directors: FloatArray, angles: FloatArray) -> FloatArray:
+    """Return directors (n, 3) turned about unit tangents (n, 3) by angles (n,)."""
+    found = np.empty_like(directors)
+    for i in range(len(directors)):
+        t, d = tangents[i], directors[i]
+        cosine, sine = math.cos(angles[i]), math.sin(angles[i])
+        for k in range(3):
+            p, q = (k + 1) % 3, (k + 2) % 3
+            found[i, k] = cosine * d[k] + sine * (t[p] * d[q] - t[q] * d[p])
+    return found

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.frame_kernels import carried
+from eulerplateau.loop.frame_kernels import carried, turned
 from eulerplateau.loop.loop import differences
 from eulerplateau.loop.writhe_kernels import tangent_areas, transported
 
@@ -50,15 +50,9 @@ class Frame:
         twists = 2 * np.pi * turns * means / lengths.sum()
         return cls(x, turns, tangents, lengths, directors(x, turns), twists)
 
-    @property
-    def second(self) -> FloatArray:
-        """The directors d2 = t x d1 (n, 3)."""
-        return np.cross(self.tangents, self.directors)
-
     def turned(self, angles: FloatArray) -> Frame:
         """Return the frame turned about each edge by angles (n,)."""
-        turn = angles[:, None]
-        found = np.cos(turn) * self.directors + np.sin(turn) * self.second
+        found = turned(self.tangents, self.directors, angles)
         twists = self.twists + np.roll(angles, -1) - angles
         return replace(self, directors=found, twists=twists)
 
@@ -82,8 +76,9 @@ class Frame:
         pi.
         """
         found = carried(other.tangents, self.tangents, other.directors)
-        sines, cosines = (self.second * found).sum(axis=1), self.directors * found
-        return np.unwrap(np.arctan2(sines, cosines.sum(axis=1)))
+        second = np.cross(self.tangents, self.directors)
+        sines, cosines = (second * found).sum(axis=1), (self.directors * found).sum(axis=1)
+        return np.unwrap(np.arctan2(sines, cosines))
 
 
 def directors(x: FloatArray, twist: float) -> FloatArray:
@@ -101,6 +96,6 @@ def directors(x: FloatArray, twist: float) -> FloatArray:
     unturned = transported(tangents, first / np.linalg.norm(first))
     middles = (np.cumsum(lengths) - 0.5 * lengths) / lengths.sum()
     angle = 2 * np.pi * twist * middles[:, None]
-    turned: FloatArray = np.cos(angle) * unturned
-    turned += np.sin(angle) * np.cross(tangents, unturned)
-    return turned
+    found: FloatArray = np.cos(angle) * unturned
+    found += np.sin(angle) * np.cross(tangents, unturned)
+    return found

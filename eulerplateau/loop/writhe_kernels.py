@@ -111,9 +111,7 @@ def writhe_by_edges(edges: FloatArray, shares: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
-def writhe_second(
-    edges: FloatArray, shares: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def writhe_second(edges: FloatArray, shares: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the second derivative of the writhe by the edges (n, 3).
 
     What the vertex after each edge adds to it counts by its share (n,), 1 for the writhe.

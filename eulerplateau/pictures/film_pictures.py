@@ -11,7 +11,6 @@ from typing import Any, cast
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import directors
 from eulerplateau.mesh.drawing import EYE, aligned, common_view
 from eulerplateau.pictures.alignment import settled_runs
 from eulerplateau.pictures.figure import ABS_KAPPA_N, MINUS_K, FieldLook, Portraits
@@ -98,11 +97,6 @@ def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
     return Portraits(draw, half)
 
 
-def _marks(row: Row, x_loop: FloatArray) -> FloatArray | None:
-    """Return which way a loop points that resists twist, so that one sees the twist."""
-    return None if row.twist is None else directors(x_loop, row.twist)
-
-
 _FIELDS = {
     "angle_defect": FieldLook("angle defect", signed=True),
     "contact_angle": FieldLook("contact angle"),
@@ -123,5 +117,5 @@ FILM = KindPictures(
     flat=is_planar,
     portraits=_portraits,
     state=lambda row: "",
-    stage=Stage(EYE, 1.0, settled_runs, aligned, common_view, "sides", _FIELDS, _marks),
+    stage=Stage(EYE, 1.0, settled_runs, aligned, common_view, "sides", _FIELDS),
 )

@@ -85,7 +85,7 @@ def run_branches(
     problem = make_problem(spec, disk)
     window = _window(spec)
     column = FILM_LOADS[spec.film.model].column
-    row_type = film_kind(spec.loop.twist_ratio).branch_row
+    row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature).branch_row
     opening = Opening("branches", row_type, column, overwrite)
     with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run

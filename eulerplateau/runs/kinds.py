@@ -9,6 +9,8 @@ from typing import Any
 from eulerplateau.film import FILM_LOADS, SPRING_LOAD
 from eulerplateau.runs.rows import (
     BranchRow,
+    CurvedRodBranchRow,
+    CurvedRodRow,
     LoadName,
     Row,
     TwistBranchRow,
@@ -67,8 +69,11 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
 
 FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes, FILM_STATES)
 WITH_TWIST = replace(FILM, row=TwistRow, branch_row=TwistBranchRow)
+CURVED = replace(FILM, row=CurvedRodRow, branch_row=CurvedRodBranchRow)
 
 
-def film_kind(twist_ratio: Any) -> Kind:
-    """Return the kind of a film's run, by what it says of its loop's twist."""
-    return FILM if twist_ratio is None else WITH_TWIST
+def film_kind(twist_ratio: Any, rest_curvature: Any) -> Kind:
+    """Return the kind of a film's run, by what it says of the rod its loop is made of."""
+    if twist_ratio is None:
+        return FILM
+    return CURVED if rest_curvature else WITH_TWIST

@@ -199,7 +199,8 @@ def kind_of(about: Mapping[str, Any]) -> Kind:
 
         return CELL
     try:
-        return film_kind(about["spec"]["loop"].get("twist_ratio"))
+        loop = about["spec"]["loop"]
+        return film_kind(loop.get("twist_ratio"), loop.get("rest_curvature"))
     except (AttributeError, KeyError, TypeError):
         return FILM
 

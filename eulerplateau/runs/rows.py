@@ -123,11 +123,6 @@ class Row:
         return float(getattr(self, self.quantity))
 
     @property
-    def twist(self) -> float | None:
-        """The loop's twist, in turns, if it resists that."""
-        return None
-
-    @property
     def load_energy(self) -> float:
         """The part of the energy that is proportional to the load."""
         return self.film_energy
@@ -170,17 +165,13 @@ class _OfTwist:
     twist_energy : float, in units of alpha / L; a part of `energy`
     writhe, link : float, in turns; right-handed is positive
     twist_moment : float, M = C 2 pi (link - writhe) / L, in units of alpha / L
+        That at the weld, where a rod is curved by nature and it is not the same everywhere.
     """
 
     twist_energy: float
     writhe: float
     link: float
     twist_moment: float
-
-    @property
-    def twist(self) -> float | None:
-        """The loop's twist, in turns."""
-        return self.link - self.writhe
 
 
 @dataclass(frozen=True)
@@ -191,6 +182,28 @@ class TwistRow(_OfTwist, Row):
 @dataclass(frozen=True)
 class TwistBranchRow(_OfTwist, BranchRow):
     """One point of a branch of a loop that resists twist."""
+
+
+@dataclass(frozen=True)
+class _OfCurvedRod(_OfTwist):
+    """What a row says of a loop that is curved by nature besides.
+
+    Attributes
+    ----------
+    rest_curvature : float, the natural curvature over that of a circle
+    """
+
+    rest_curvature: float
+
+
+@dataclass(frozen=True)
+class CurvedRodRow(_OfCurvedRod, Row):
+    """One load of a sweep of a loop that is curved by nature."""
+
+
+@dataclass(frozen=True)
+class CurvedRodBranchRow(_OfCurvedRod, BranchRow):
+    """One point of a branch of a loop that is curved by nature."""
 
 
 @dataclass(frozen=True)

@@ -199,6 +199,9 @@ class RunSpec(Settings):
             raise SpecError(
                 "film.plane", f"needs film.model = 'area'; found {self.film.model!r}"
             )
+        if self.film.plane and self.loop.rest_curvature:
+            problem = "should be false with loop.rest_curvature"
+            raise SpecError("film.plane", problem)
         if self.film.plane and self.output.modes:
             raise SpecError("output.modes", "should be 0 with film.plane = true")
         return self

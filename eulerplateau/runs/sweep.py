@@ -77,7 +77,7 @@ def run_sweep(
     start, tensions, solver = start_shape(spec, disk), None, spec.solver
     column = FILM_LOADS[spec.film.model].column
     loads = spec.loads()
-    row_type = film_kind(spec.loop.twist_ratio).row
+    row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature).row
     own = loads if resume else None
     opening = Opening("sweep", row_type, column, overwrite, loads=own)
     with recording(spec, problem, path, opening, started) as recorder:
@@ -118,7 +118,7 @@ def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictErro
     load = FILM_LOADS[spec.film.model].column
     loads = spec.loads() if resume else None
     try:
-        row_type = film_kind(spec.loop.twist_ratio).row
+        row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature).row
         look(path, describe(spec, make_mesh(spec)), "sweep", row_type, load, loads)
     except ConflictError as error:
         return error

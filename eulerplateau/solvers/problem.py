@@ -58,9 +58,9 @@ class Problem:
 
         `in_plane` keeps a film of true area in the plane of its disk. With `twist_ratio`,
         the rigidities' C / B, the loop resists twist: it was turned `link` times and then
-        welded; and by nature it may be curved, `rest_curvature` times as much as a circle of
-        its length. Raises SpecError for an unknown film or a wrong number, MeshError for a disk
-        that cannot carry it.
+        welded; by nature it is `rest_curvature` times as curved as a circle of its length.
+        Raises SpecError for an unknown film or a wrong number, MeshError for a disk that
+        cannot carry it.
         """
         if not isinstance(disk, Disk):
             problem = f"found {type(disk).__name__}; read_disk and mesh_polygon return one"

@@ -21,7 +21,7 @@ from eulerplateau.pictures.render.colours import (
     loop_colours,
     scale_of,
 )
-from eulerplateau.pictures.render.fields import read_field
+from eulerplateau.pictures.render.fields import read_field, read_marks
 from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
 from eulerplateau.runs import Run, read_run
@@ -125,7 +125,7 @@ class RunPictures:
     def _picture(self, scene: Scene, place: int, shape: Shape, view: View) -> Pixels:
         values = self.fields.get(place)
         film = coloured_film(shape, view.eye, self.colour, values, self.scale)
-        marks = self.stage.marks(self.run.rows[place], shape.x_loop)
+        marks = read_marks(self.run.shape_path(self.run.rows[place]), shape)
         colours = loop_colours(shape, values, self.scale)
         pixels = scene.pixels(shape, film, colours, marks, view)
         return captioned(pixels, caption(self.run.rows[place]), self.scale)

@@ -15,6 +15,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -191,8 +192,9 @@ class CurvedRod(OwnTerm):
         names = {"link": "link", "twist_ratio": "ratio", "rest_curvature": "curvature"}
         if parameter not in names:
             return self
+        changed: dict[str, Any] = {names[parameter]: value}
         near = tuple(self._known[:1]) or self._near
-        return replace(self, **{names[parameter]: value}, _known=[], _near=near)
+        return replace(self, **changed, _known=[], _near=near)
 
 
 def _away(known: Frame, other: Frame) -> float:

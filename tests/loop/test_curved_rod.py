@@ -1,4 +1,4 @@
-"""A rod that is curved by nature: its frame at rest, what the loop feels, and its limits."""
+"""A rod that is curved by nature: its frame at rest, what the loop feels, its limits."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def rod_of(x: FloatArray, link: float = 0.0, q: float = 0.7) -> CurvedRod:
 
 
 def bow(n: int, size: float = 0.3) -> tuple[FloatArray, FloatArray]:
-    """A smooth loop in no plane, and its curvature vectors half-way between its vertices."""
+    """A smooth loop in no plane, and its curvature vectors half-way between vertices."""
 
     def curve(t: FloatArray, order: int) -> FloatArray:
         a, b = t + order * np.pi / 2, 2 * t + order * np.pi / 2
@@ -136,7 +136,8 @@ def test_no_place_numbering_or_direction_is_felt_and_mirror_images_have_minus_li
     x = tangle(24)
     expected = pytest.approx(rod_of(x, 1.0).energy(x), rel=1e-12)
     turn = Rotation.random(rng=np.random.default_rng(2))
-    for other in (turn.apply(x) + [1, 2, 3], np.roll(x, 7, axis=0), x[::-1].copy()):
+    placed = turn.apply(x) + np.array([1.0, 2.0, 3.0])
+    for other in (placed, np.roll(x, 7, axis=0), x[::-1].copy()):
         assert rod_of(other, 1.0).energy(other) == expected
     mirrored = x * [1, 1, -1]
     assert rod_of(mirrored, -1.0).energy(mirrored) == expected

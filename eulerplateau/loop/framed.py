@@ -107,7 +107,7 @@ class FramedEnergy:
     def hessian(self, frame: Frame) -> FloatArray:
         """Return the stiffness of the loop (3 n, 3 n), its frame at rest all the time."""
         n = len(frame.x)
-        own, beside, *_ = self._second(frame)
+        own, beside, *mixed = self._second(frame)
         twist = -2 * math.pi * self.springs * frame.twists
         of_twist = writhe_second(differences(frame.x), twist)
         first, then = _twist_slopes(frame)
@@ -118,7 +118,7 @@ class FramedEnergy:
         matrix = np.zeros((n, 3, n, 3))
         add_edge_blocks(own, beside, 1.0, matrix)
         whole = matrix.reshape(3 * n, 3 * n)
-        given = solve_triangular(self._root(frame), self._mixed(frame), lower=True)
+        given = _solve(self._root(frame), self._mixed(frame, mixed))
         whole -= given.T @ given
         return whole
 
@@ -139,9 +139,9 @@ class FramedEnergy:
 
     def _with_frame(self, frame: Frame, held: FloatArray, angles: FloatArray) -> FloatArray:
         """Return a change of force (n, 3), with what the frame's own (n,) leads to."""
-        root, mixed = self._root(frame), self._mixed(frame)
-        given = solve_triangular(root, angles, lower=True)
-        moved = solve_triangular(root, given, lower=True, trans=1)
+        root = self._root(frame)
+        mixed = self._mixed(frame, self._second(frame)[2:])
+        moved = _solve(root, _solve(root, angles), trans=1)
         found: FloatArray = held - (moved @ mixed).reshape(held.shape)
         return found
 
@@ -154,17 +154,17 @@ class FramedEnergy:
         """Return a lower triangular R (n, n), R R^T = E_psipsi."""
         matrix = self._chain(-self._pulls(frame)[0])
         try:
-            root: FloatArray = cholesky(matrix, lower=True)
+            root: FloatArray = cholesky(matrix, lower=True, check_finite=False)
         except LinAlgError:
             # Of a frame that turns for nothing, as that of a ring may.
             held = _HELD * float(self.springs.max()) * np.eye(len(matrix))
             root = cholesky(matrix + held, lower=True)
         return root
 
-    def _mixed(self, frame: Frame) -> FloatArray:
-        """Return E_psix (n, 3 n)."""
+    def _mixed(self, frame: Frame, of_bending: list[FloatArray]) -> FloatArray:
+        """Return E_psix (n, 3 n); `of_bending`: the last three parts of `_second`."""
         n = len(frame.x)
-        *_, before, own, after = self._second(frame)
+        before, own, after = of_bending
         first, then = (self.springs[:, None] * part for part in _twist_slopes(frame))
         i = np.arange(n)
         by_edges = np.zeros((n, n, 3))
@@ -181,6 +181,14 @@ def _twist_slopes(frame: Frame) -> tuple[FloatArray, FloatArray]:
     lengths = frame.lengths[:, None]
     binormals = np.cross(t, u) / (1 + (t * u).sum(axis=1))[:, None]
     return binormals / lengths, binormals / np.roll(lengths, -1, axis=0)
+
+
+def _solve(root: FloatArray, rhs: FloatArray, trans: int = 0) -> FloatArray:
+    """Return R^-1 rhs, or R^-T rhs, of a lower triangular R."""
+    found: FloatArray = solve_triangular(
+        root, rhs, lower=True, trans=trans, check_finite=False
+    )
+    return found
 
 
 def _outer(a: FloatArray, b: FloatArray) -> FloatArray:

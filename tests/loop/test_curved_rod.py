@@ -203,6 +203,42 @@ def test_moments_change_along_the_rod_as_its_balance_wants_with_order_2() -> Non
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.1)
 
 
+def test_of_several_frames_the_same_is_found_wherever_a_loop_lies() -> None:
+    x = tangle(40)
+    rod = CurvedRod(loop_of(x), 0.02, 0.0, 3.0)
+    even = Frame.even(x, rod.frame(x).turns)
+    starts = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    others = [rod.framed.settled(even, np.full(40, start)) for start in starts]
+    assert np.ptp([rod.framed.energy(other) for other in others]) > 1e-3
+    for turn in Rotation.random(8, rng=np.random.default_rng(5)):
+        placed = turn.apply(x)
+        fresh = CurvedRod(loop_of(x), 0.02, 0.0, 3.0)
+        expected = pytest.approx(rod.energy(x), rel=1e-10)
+        assert fresh.energy(placed) == expected
+    # And whatever loop far away was asked for before.
+    turn = Rotation.from_rotvec([0, 0, np.pi])
+    fresh = CurvedRod(loop_of(x), 0.02, 0.0, 3.0)
+    expected_frame = fresh.frame(turn.apply(x))
+    np.testing.assert_array_equal(
+        rod.frame(turn.apply(x)).directors, expected_frame.directors
+    )
+
+
+def test_where_a_loop_is_straight_or_folded_flat_nothing_breaks() -> None:
+    """Two straight stretches and two half circles; then closed to a strip of no width."""
+    t = np.linspace(-np.pi / 2, np.pi / 2, 12)
+    cap = np.stack([1 + 0.3 * np.cos(t), 0.3 * np.sin(t), 0 * t], axis=1)
+    straight = np.linspace([1, 0.3, 0], [-1, 0.3, 0], 12)[1:-1]
+    half = np.concatenate([cap, straight])
+    x = np.concatenate([half, half * [-1, -1, 1]])
+    for link in (0.0, 1.0):
+        for width in (1.0, 1e-3):
+            flat = x * [1, width, 1]
+            rod = rod_of(flat, link)
+            found = rod.energy(flat), rod.force(flat), rod.hessian(flat)
+            assert all(np.isfinite(part).all() for part in found)
+
+
 def test_twist_is_link_less_writhe_wherever_it_goes() -> None:
     x = tangle(40)
     twist, rod = Twist(loop_of(x), 0.8, 1.0), rod_of(x, 1.0)

@@ -31,10 +31,10 @@ from eulerplateau.loop.writhe_kernels import tangent_area, writhe
 _PASSED = 0.5
 # Loops whose frames are kept: where a step begins, and where it may end.
 _KEPT = 4
-# The cosine of the angle up to which tangents are turned for frames to be carried over.
-_NEAR = 0.8
-# Of the energy's size: what a frame gains that jumps, and quadrature along a step cannot.
-_JUMPED = 1e-6
+# How far tangents may be apart for frames to be carried over.
+_NEAR = 0.5
+# Of the energy's size: what a frame sets free that snaps, and quadrature does not miss.
+_SNAPPED = 1e-6
 # Gauss's rule from 0 to 1: places and shares.
 _GAUSS = 0.5 * (np.polynomial.legendre.leggauss(5) + np.array([[1.0], [0.0]]))
 
@@ -99,15 +99,28 @@ class CurvedRod(OwnTerm):
         for known in self._known:
             if np.array_equal(known.x, x):
                 return known
-        even = Frame.even(x, self.link - writhe(np.ascontiguousarray(x)))
+        even = self._even(x)
         starts = (*self._known, *self._near)
         near = min(starts, key=lambda start: _away(start, even), default=None)
-        if near is None or _away(near, even) > 1 - _NEAR:
+        if near is None or _away(near, even) > _NEAR:
             found = self.framed.best_turned(even)
         else:
             found = self.framed.settled(even, even.angles_to(near))
-        self._known[:] = [found, *self._known[: _KEPT - 1]]
+        self._keep(found)
         return found
+
+    def _even(self, x: FloatArray) -> Frame:
+        """Return the frame of a loop whose twist is the same everywhere."""
+        return Frame.even(x, self.link - writhe(np.ascontiguousarray(x)))
+
+    def _keep(self, *frames: Frame) -> None:
+        """Keep frames in place of those that were known of the same loops."""
+        others = [
+            known
+            for known in self._known
+            if not any(np.array_equal(known.x, frame.x) for frame in frames)
+        ]
+        self._known[:] = [*frames, *others][:_KEPT]
 
     def moments(self, x: FloatArray) -> FloatArray:
         """Return the twisting moment C Omega (n,) at the vertex after each edge."""
@@ -154,21 +167,23 @@ class CurvedRod(OwnTerm):
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the energy at x + step less that at x, as precise as the difference.
 
-        By the work of the force. Raises LinAlgError where a strand would pass through
-        another, or the frame would jump.
+        It is the work of the force on the way, along which the frame is followed; where
+        that snaps, the energy falls by more. Raises LinAlgError where a strand would pass
+        through another.
         """
-        before, then = self.frame(x), self.frame(x + step)
-        gained = tangent_area(differences(x), differences(then.x)) / (2 * math.pi)
-        if abs(before.turns - then.turns - gained) > _PASSED:
-            raise LinAlgError("a strand of the loop would pass through another")
+        before = self.frame(x)
         frame, work = before, 0.0
         for place, share in zip(*_GAUSS, strict=True):
             frame = self.framed.at_rest(frame.carried(x + place * step))
             work += share * float(np.vdot(step, self.framed.force(frame)))
+        even = self._even(x + step)
+        gained = tangent_area(differences(x), differences(even.x)) / (2 * math.pi)
+        if abs(before.turns - even.turns - gained) > _PASSED:
+            raise LinAlgError("a strand of the loop would pass through another")
+        then = self.framed.settled(even, even.angles_to(frame))
+        self._keep(then, before)
         difference = self.framed.energy(then) - self.framed.energy(before)
-        if abs(difference - work) > _JUMPED * self._size:
-            raise LinAlgError("the rod's frame would jump")
-        return work
+        return difference if abs(difference - work) > _SNAPPED * self._size else work
 
     def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
         """Return the derivative of the force (n, 3) by one of the rod's numbers.
@@ -198,5 +213,5 @@ class CurvedRod(OwnTerm):
 
 
 def _away(known: Frame, other: Frame) -> float:
-    """Return 1 less the cosine of the largest angle between two loops' tangents."""
-    return 1 - float((known.tangents * other.tangents).sum(axis=1).min())
+    """Return how far the tangents of two loops are apart, at most."""
+    return float(np.abs(known.tangents - other.tangents).max())

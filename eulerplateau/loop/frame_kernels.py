@@ -18,7 +18,7 @@ from numba import njit
 
 from eulerplateau.arrays import FloatArray
 
-_STEPS = 10_000
+_STEPS = 1000
 # Radians: Newton's method is not believed to go farther in a step.
 _FAR = 0.5
 # A pivot of so much of the largest is none: the frame turns as a whole for nothing.
@@ -31,8 +31,8 @@ def settle(
 ) -> bool:
     """Take angles psi (n,) down to a minimum; return whether they are at one.
 
-    By Newton's method where that is near one. Else by the least of a parabola that lies
-    above the energy everywhere, since a cosine curves by no more than its size: no such
+    By Newton's method where that is near one. Else by the same with as much added to the
+    stiffness as makes the energy fall, which twice the size of the cosines does: no such
     step goes up. False at an equilibrium that is no minimum, from which nothing leads down.
 
     Parameters
@@ -43,6 +43,8 @@ def settle(
     slope = _slope(p, q, springs, twists, psi)
     left = np.abs(slope).max()
     rounding = 1e-15 * (springs.max() * (np.abs(psi).max() + 1) + size.max())
+    least = 1e-9 * size.max()
+    added = 1e-3 * size.max() + least
     for _ in range(_STEPS):
         curvature = -p * np.cos(psi) - q * np.sin(psi)
         step = -slope
@@ -60,9 +62,16 @@ def settle(
                     return True
                 close = False
         if not close:
-            step = -slope
-            solve_chain(size, springs, step)
-            trial = psi + step
+            energy, falls = _energy(p, q, springs, twists, psi), False
+            while not falls:
+                step = -slope
+                trial, surely = psi, added >= 2 * size.max()
+                definite = solve_chain(curvature + added, springs, step)
+                if definite and (surely or np.abs(step).max() < _FAR):
+                    trial = psi + step
+                falls = surely or _energy(p, q, springs, twists, trial) < energy
+                added *= 8
+            added = max(added / 64, least)
             after = _slope(p, q, springs, twists, trial)
             reached = np.abs(after).max()
         psi[:], slope, left = trial, after, reached
@@ -118,6 +127,19 @@ def _slope(
         slope[i] = turned + before - moment
         before = moment
     return slope
+
+
+@njit(cache=True)
+def _energy(
+    p: FloatArray, q: FloatArray, springs: FloatArray, twists: FloatArray, psi: FloatArray
+) -> float:
+    """Return the energy of angles."""
+    n, total = len(psi), 0.0
+    for i in range(n):
+        twist = twists[i] + psi[(i + 1) % n] - psi[i]
+        total += p[i] * math.cos(psi[i]) + q[i] * math.sin(psi[i])
+        total += 0.5 * springs[i] * twist * twist
+    return total
 
 
 @njit(cache=True)

@@ -72,13 +72,16 @@ class Frame:
     def angles_to(self, other: Frame) -> FloatArray:
         """Return the angles (n,) that turn it into a frame of a loop near by.
 
-        That is carried here. They are continuous along the loop, the first between -pi and
-        pi.
+        That is carried here, what its whole twist is more or less spread evenly. The first
+        is between -pi and pi.
         """
-        found = carried(other.tangents, self.tangents, other.directors)
-        second = np.cross(self.tangents, self.directors)
-        sines, cosines = (second * found).sum(axis=1), (self.directors * found).sum(axis=1)
-        return np.unwrap(np.arctan2(sines, cosines))
+        moved = other.carried(self.x)
+        excess = moved.twists - self.twists
+        excess -= excess.mean()
+        there, here, t = moved.directors[0], self.directors[0], self.tangents[0]
+        first = np.arctan2(np.cross(here, there) @ t, here @ there)
+        angles: FloatArray = first + np.cumsum(excess) - excess
+        return angles
 
 
 def directors(x: FloatArray, twist: float) -> FloatArray:

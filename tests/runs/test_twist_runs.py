@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import CurvedRod, Loop, directors
 from eulerplateau.mesh import Shape, read_disk, read_vtp, write_mesh
-from eulerplateau.pictures.render.fields import read_marks
+from eulerplateau.pictures.marks import read_marks
 from eulerplateau.runs import read_run, run_branches, run_sweep
 from eulerplateau.runs.ensembles import load_ensemble, run_ensemble
 from eulerplateau.runs.rows import COLUMNS

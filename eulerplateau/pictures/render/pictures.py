@@ -11,6 +11,7 @@ from eulerplateau.errors import OutputError
 from eulerplateau.mesh import Shape, write_whole
 from eulerplateau.mesh.drawing import View, turning_views
 from eulerplateau.pictures.kinds import Stage
+from eulerplateau.pictures.marks import read_marks
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.render.choice import chosen_steps
 from eulerplateau.pictures.render.colours import (
@@ -21,7 +22,7 @@ from eulerplateau.pictures.render.colours import (
     loop_colours,
     scale_of,
 )
-from eulerplateau.pictures.render.fields import read_field, read_marks
+from eulerplateau.pictures.render.fields import read_field
 from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
 from eulerplateau.runs import Run, read_run

@@ -24,7 +24,9 @@ def warm() -> None:
     for problem in films:
         for solver in SOLVERS:
             solve(problem, 1000.0, start, solver=solver, max_iterations=8)
-    solve(Problem(mesh, twist_ratio=0.75, link=0.3), 500.0, start, max_iterations=8)
+    for curvature in (0.0, 0.5):
+        rod = Problem(mesh, twist_ratio=0.75, link=0.3, rest_curvature=curvature)
+        solve(rod, 500.0, start, max_iterations=8)
     self_intersections(start, mesh.triangles)
     angle = 2 * np.pi * np.arange(200) / 200
     ellipse = np.stack([1.3 * np.cos(angle), np.sin(angle)], axis=1)

@@ -4,6 +4,8 @@
     energy.py    an energy as a sum of terms, with its constraint and its free motions:
                  write another `Term` (term.py) in a file of its own to add to the physics
     twist.py     of a rod that was turned before it was welded, by its writhe
+    curved_rod.py  of one that is curved by nature; framed.py, how its frame gives way
+    rod.py       which of these a loop has, by the numbers that one gives
     frames.py    which way its cross-sections point
     bending.py   the bending term, and the energy of a loop that keeps its lengths
     lengths.py   how the lengths of its edges are kept, or not; how a loop is closed again

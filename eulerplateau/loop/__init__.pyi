@@ -1,9 +1,10 @@
 from .adhesions import Adhesions as Adhesions
 from .bending import Bending as Bending, inextensible as inextensible
+from .curved_rod import CurvedRod as CurvedRod
 from .edges import Edges as Edges, edges_of as edges_of
 from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
-from .frames import directors as directors
+from .frames import Frame as Frame, directors as directors
 from .free_bending import FreeBending as FreeBending
 from .lengths import (
     Lengths as Lengths,
@@ -27,6 +28,7 @@ from .motions import (
     rigid_motions as rigid_motions,
     sliding as sliding,
 )
+from .rod import Rod as Rod
 from .term import LEAST as LEAST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,

@@ -38,7 +38,9 @@ def rigid_motions(x: FloatArray) -> FloatArray:
 
 
 def sliding(loop: Loop, x: FloatArray) -> FloatArray | None:
-    """Return the loop's sliding along itself (n, d), of unit size; None if that is rigid.
+    """Return the loop's sliding along itself (n, d), of unit size.
+
+    None if that is rigid, or costs something: where the loop knows its pieces apart.
 
     A soap film does not know which piece of a uniform loop lies where: a loop that slides
     along its own curve changes nothing but how the vertices lie on it, which is to say the
@@ -55,6 +57,8 @@ def sliding(loop: Loop, x: FloatArray) -> FloatArray | None:
     LinAlgError
         If an edge has no length.
     """
+    if not all(term.slides for term in loop.terms.values()):
+        return None
     chords = loop.chords(x)
     along = chords / np.linalg.norm(chords, axis=1)[:, None]
     slide = along + np.roll(along, 1, axis=0)

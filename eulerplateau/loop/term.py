@@ -11,7 +11,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 
 # What a branch of films may vary: values down to these, included, do not exist.
-LEAST = {"load": 0.0, "link": -math.inf, "twist_ratio": 0.0}
+LEAST = {"load": 0.0, "link": -math.inf, "twist_ratio": 0.0, "rest_curvature": 0.0}
 
 
 class Term(ABC):
@@ -78,6 +78,11 @@ class Term(ABC):
 
 class OwnTerm(Term):
     """What a loop's own energy has beside its bending: that of its twist."""
+
+    @property
+    def slides(self) -> bool:
+        """Whether a loop slides along itself for nothing, as far as the term knows."""
+        return True
 
     @property
     def parameters(self) -> Mapping[str, float]:

@@ -124,7 +124,7 @@ class Twist(OwnTerm):
         matrix = np.outer(4 * math.pi**2 * self.gamma * slope, slope)
         blocks = matrix.reshape(len(x), 3, len(x), 3)
         factor = -2 * math.pi * self.moment(x)
-        add_edge_blocks(*writhe_second(differences(x)), factor, blocks)
+        add_edge_blocks(*writhe_second(differences(x), np.ones(len(x))), factor, blocks)
         return matrix
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
@@ -199,4 +199,4 @@ def _gained(x: FloatArray, after: FloatArray) -> float:
 
 def _slope(x: FloatArray) -> FloatArray:
     """Return dWr/dx (n, 3)."""
-    return -backward_differences(writhe_by_edges(differences(x)))
+    return -backward_differences(writhe_by_edges(differences(x), np.ones(len(x))))

@@ -75,34 +75,49 @@ def writhe(x: FloatArray) -> float:
 @njit(cache=True)
 def tangent_area(before: FloatArray, after: FloatArray) -> float:
     """Return the area that the tangents of a polygon gain as its edges (n, 3) turn."""
-    n = before.shape[0]
     total = 0.0
-    for i in range(n):
-        j = (i + 1) % n
-        total += _solid_angle(before[i], after[j], before[j])
-        total += _solid_angle(before[i], after[i], after[j])
+    for area in tangent_areas(before, after).flat:
+        total += area
     return total
 
 
 @njit(cache=True)
-def writhe_by_edges(edges: FloatArray) -> FloatArray:
-    """Return the derivative of the writhe by the edges (n, 3)."""
+def tangent_areas(before: FloatArray, after: FloatArray) -> FloatArray:
+    """Return the parts of that at the vertex after each edge: of two triangles (n, 2)."""
+    n = before.shape[0]
+    areas = np.empty((n, 2))
+    for i in range(n):
+        j = (i + 1) % n
+        areas[i, 0] = _solid_angle(before[i], after[j], before[j])
+        areas[i, 1] = _solid_angle(before[i], after[i], after[j])
+    return areas
+
+
+@njit(cache=True)
+def writhe_by_edges(edges: FloatArray, shares: FloatArray) -> FloatArray:
+    """Return the derivative of the writhe by the edges (n, 3).
+
+    What the vertex after each edge adds to it counts by its share (n,), 1 for the writhe.
+    """
     n = edges.shape[0]
     slope = np.zeros((n, 3))
     tangent, length = _tangents(edges)
     binormal = _half_binormals(tangent)
     for i in range(n):
         for k in range(3):
-            whole = binormal[i, k] + binormal[i - 1, k]
+            whole = shares[i] * binormal[i, k] + shares[i - 1] * binormal[i - 1, k]
             slope[i, k] = whole / (2 * math.pi * length[i])
     return slope
 
 
 @njit(cache=True)
-def writhe_second(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
+def writhe_second(edges: FloatArray, shares: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the second derivative of the writhe by the edges (n, 3).
 
-    Blocks (n, 3, 3): of each edge with itself, and of each edge with the next.
+    What the vertex after each edge adds to it counts by its share (n,), 1 for the writhe.
+    Blocks (n, 3, 3): of each edge with itself, and of each edge with the next. With shares
+    that differ those with itself are not symmetric, as directions across an edge cannot be
+    carried everywhere without turning them: their symmetric part is the second derivative.
     """
     n = edges.shape[0]
     own, beside = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
@@ -110,7 +125,7 @@ def writhe_second(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
     binormal = _half_binormals(tangent)
     for i in range(n):
         j = (i + 1) % n
-        t, u, b = tangent[i], tangent[j], binormal[i]
+        t, u, b, share = tangent[i], tangent[j], binormal[i], shares[i]
         width = 1 + t[0] * u[0] + t[1] * u[1] + t[2] * u[2]
         # How b changes as the first tangent turns, and as the second does.
         first, second = np.zeros((3, 3)), np.zeros((3, 3))
@@ -127,12 +142,12 @@ def writhe_second(edges: FloatArray) -> tuple[FloatArray, FloatArray]:
         _across(second, u)
         for k in range(3):
             for m in range(3):
-                own[i, k, m] += first[k, m] / length[i] ** 2
-                own[j, k, m] += second[k, m] / length[j] ** 2
-                beside[i, k, m] += second[k, m] / (length[i] * length[j])
+                own[i, k, m] += share * first[k, m] / length[i] ** 2
+                own[j, k, m] += share * second[k, m] / length[j] ** 2
+                beside[i, k, m] += share * second[k, m] / (length[i] * length[j])
                 # b lies across both tangents: what is left of it where an edge grows.
-                own[i, k, m] -= b[k] * t[m] / length[i] ** 2
-                own[j, k, m] -= b[k] * u[m] / length[j] ** 2
+                own[i, k, m] -= share * b[k] * t[m] / length[i] ** 2
+                own[j, k, m] -= share * b[k] * u[m] / length[j] ** 2
     return own / (2 * math.pi), beside / (2 * math.pi)
 
 

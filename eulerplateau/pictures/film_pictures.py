@@ -97,16 +97,6 @@ def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
     return Portraits(draw, half)
 
 
-def _marks(row: Row, x_loop: FloatArray) -> FloatArray | None:
-    """Return which way a loop points that resists twist, so that one sees the twist."""
-    if row.twist is None:
-        return None
-    # Which loads what compiles loops.
-    from eulerplateau.loop import directors
-
-    return directors(x_loop, row.twist)
-
-
 _FIELDS = {
     "angle_defect": FieldLook("angle defect", signed=True),
     "contact_angle": FieldLook("contact angle"),
@@ -127,5 +117,5 @@ FILM = KindPictures(
     flat=is_planar,
     portraits=_portraits,
     state=lambda row: "",
-    stage=Stage(EYE, 1.0, settled_runs, aligned, common_view, "sides", _FIELDS, _marks),
+    stage=Stage(EYE, 1.0, settled_runs, aligned, common_view, "sides", _FIELDS),
 )

@@ -29,8 +29,6 @@ class Stage:
     view : from where shapes are seen
     colour : str, what renders colour by if nothing is said
     fields : how fields are shown, by name
-    marks : of a row and its loop (n_b, 3), directions (n_b, 3) across its edges in which
-        the wire is marked; None without marks
     """
 
     eye: FloatArray
@@ -42,7 +40,6 @@ class Stage:
     view: Callable[[Sequence[Shape]], View]
     colour: str
     fields: Mapping[str, FieldLook]
-    marks: Callable[[Any, FloatArray], FloatArray | None] = lambda row, x_loop: None
 
 
 @dataclass(frozen=True)

@@ -90,7 +90,7 @@ def run_branches(
         raise SpecError("film.plane", "should be false: branches leave the plane")
     problem = make_problem(spec, disk)
     window, varied, held = spec.window(), spec.explored, spec.film.load
-    row_type = film_kind(spec.loop.twist_ratio, varied).branch_row
+    row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature, varied).branch_row
     opening = Opening("branches", row_type, spec.column(varied), overwrite)
     names = special_columns(opening.quantity)
     with recording(spec, problem, path, opening, started) as recorder:

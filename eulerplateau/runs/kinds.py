@@ -10,6 +10,10 @@ from eulerplateau.film import FILM_LOADS, SPRING_LOAD
 from eulerplateau.runs.parameters import LOOP_PARAMETERS
 from eulerplateau.runs.rows import (
     BranchRow,
+    CurvedRatioBranchRow,
+    CurvedRatioRow,
+    CurvedRodBranchRow,
+    CurvedRodRow,
     LoadName,
     RatioBranchRow,
     RatioRow,
@@ -70,20 +74,28 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
 
 FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes, FILM_STATES)
 WITH_TWIST = replace(FILM, row=TwistRow, branch_row=TwistBranchRow)
+CURVED = replace(FILM, row=CurvedRodRow, branch_row=CurvedRodBranchRow)
 # Rows with a column for what is varied, where a loop's rows have none.
-_ROWS_OF = {"twist_ratio": (RatioRow, RatioBranchRow)}
+_RATIO_ROWS = {
+    TwistRow: (RatioRow, RatioBranchRow),
+    CurvedRodRow: (CurvedRatioRow, CurvedRatioBranchRow),
+}
+_ROWS_OF = {"twist_ratio": _RATIO_ROWS}
 
 
-def film_kind(twist_ratio: Any, varied: Any = "load") -> Kind:
-    """Return the kind of a film's run, by its loop's twist and what it varies.
+def film_kind(twist_ratio: Any, rest_curvature: Any, varied: Any = "load") -> Kind:
+    """Return the kind of a film's run, by the rod of its loop and what it varies.
 
     What varies a number of the loop is not to be shown over the load.
     """
-    kind = FILM if twist_ratio is None else WITH_TWIST
+    kind = FILM
+    if twist_ratio is not None:
+        kind = CURVED if rest_curvature else WITH_TWIST
     own = LOOP_PARAMETERS.get(varied)
     if own is None:
         return kind
-    row, branch_row = _ROWS_OF.get(own.column, (kind.row, kind.branch_row))
+    rows: dict[Any, Any] = _ROWS_OF.get(own.column, {})
+    row, branch_row = rows.get(kind.row, (kind.row, kind.branch_row))
     return replace(
         kind, row=row, branch_row=branch_row, load=lambda about: own, common_load=None
     )

@@ -11,7 +11,8 @@ from eulerplateau.settings import Settings
 class LoopSettings(Settings):
     """The loop's bending modulus and length: they turn a film's constant into a load.
 
-    And its twist: without `twist_ratio` that escapes, and costs nothing.
+    And its twist: without `twist_ratio` that escapes, and costs nothing. And what it was
+    before its ends were welded, which is no matter to a rod whose twist escapes.
 
     Attributes
     ----------
@@ -22,16 +23,21 @@ class LoopSettings(Settings):
         C / B, the rigidity to twist over that to bending: 2/3 to 1 for a round rod.
     link : float
         Turns that the rod was given before its ends were welded; by default none.
+    rest_curvature : float
+        The rod's natural curvature over 2 pi / length, that of a circle; by default none.
     """
 
     alpha: float = Field(default=1.0, gt=0)
     length: float = Field(default=1.0, gt=0)
     twist_ratio: float | None = Field(default=None, gt=0)
     link: float | None = None
+    rest_curvature: float | None = Field(default=None, ge=0)
 
     @model_validator(mode="after")
-    def _link_needs_a_rigidity(self) -> LoopSettings:
-        if self.link is not None and self.twist_ratio is None:
-            problem = "needs loop.twist_ratio: twist that costs nothing is lost"
-            raise SpecError("loop.link", problem)
+    def _a_rod_needs_a_rigidity(self) -> LoopSettings:
+        if self.twist_ratio is None:
+            lost = "needs loop.twist_ratio: twist that costs nothing is lost"
+            for name in ("link", "rest_curvature"):
+                if getattr(self, name) is not None:
+                    raise SpecError(f"loop.{name}", lost)
         return self

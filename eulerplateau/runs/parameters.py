@@ -7,7 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-Parameter = Literal["load", "link", "twist_ratio"]
+Parameter = Literal["load", "link", "twist_ratio", "rest_curvature"]
+# The key of the loop without which there is nothing to vary.
+NEEDED = {
+    "link": "twist_ratio",
+    "twist_ratio": "twist_ratio",
+    "rest_curvature": "rest_curvature",
+}
 
 
 @dataclass(frozen=True)
@@ -37,6 +43,13 @@ class LoopParameter:
         return f"{self.meaning} ${self.tex}$"
 
 
+def _energy_by_curvature(row: Any) -> float:
+    """Return dE/dq of a row: E has -2 k0 oint k1 ds + k0^2 besides, k0 = 2 pi q."""
+    parts = row.film_energy + row.bending_energy + row.twist_energy
+    besides, q = row.energy - parts, row.rest_curvature
+    return float(besides / q + 4 * math.pi**2 * q)
+
+
 LOOP_PARAMETERS = {
     "link": LoopParameter(
         "link",
@@ -51,5 +64,12 @@ LOOP_PARAMETERS = {
         "C/B",
         "rigidity to twist over that to bending",
         lambda row: row.twist_energy / row.twist_ratio,
+    ),
+    "rest_curvature": LoopParameter(
+        "rest_curvature",
+        "q",
+        "q",
+        "natural curvature over 2 pi / L",
+        _energy_by_curvature,
     ),
 }

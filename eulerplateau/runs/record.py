@@ -199,8 +199,8 @@ def kind_of(about: Mapping[str, Any]) -> Kind:
 
         return CELL
     try:
-        twist_ratio = about["spec"]["loop"].get("twist_ratio")
-        return film_kind(twist_ratio, about.get("varied", "load"))
+        loop, varied = about["spec"]["loop"], about.get("varied", "load")
+        return film_kind(loop.get("twist_ratio"), loop.get("rest_curvature"), varied)
     except (AttributeError, KeyError, TypeError):
         return FILM
 

@@ -130,11 +130,6 @@ class Row:
         return float(getattr(self, self.quantity))
 
     @property
-    def twist(self) -> float | None:
-        """The loop's twist, in turns, if it resists that."""
-        return None
-
-    @property
     def energy_rate(self) -> float:
         """The derivative of the energy by what is varied, at an equilibrium."""
         own = LOOP_PARAMETERS.get(self.quantity)
@@ -178,17 +173,13 @@ class _OfTwist:
     twist_energy : float, in units of alpha / L; a part of `energy`
     writhe, link : float, in turns; right-handed is positive
     twist_moment : float, M = C 2 pi (link - writhe) / L, in units of alpha / L
+        That at the weld, where a rod is curved by nature and it is not the same everywhere.
     """
 
     twist_energy: float
     writhe: float
     link: float
     twist_moment: float
-
-    @property
-    def twist(self) -> float | None:
-        """The loop's twist, in turns."""
-        return self.link - self.writhe
 
 
 @dataclass(frozen=True)
@@ -221,6 +212,37 @@ class RatioRow(_OfRatio, TwistRow):
 @dataclass(frozen=True)
 class RatioBranchRow(_OfRatio, TwistBranchRow):
     """One point of a branch in the rigidity to twist."""
+
+
+class _OfCurvedRod(_OfTwist):
+    """What a row says of a loop that is curved by nature besides.
+
+    Attributes
+    ----------
+    rest_curvature : float, the natural curvature over that of a circle
+    """
+
+    rest_curvature: float
+
+
+@dataclass(frozen=True)
+class CurvedRodRow(_OfCurvedRod, Row):
+    """One load of a sweep of a loop that is curved by nature."""
+
+
+@dataclass(frozen=True)
+class CurvedRodBranchRow(_OfCurvedRod, BranchRow):
+    """One point of a branch of a loop that is curved by nature."""
+
+
+@dataclass(frozen=True)
+class CurvedRatioRow(_OfRatio, CurvedRodRow):
+    """One rigidity to twist of a sweep of a loop that is curved by nature."""
+
+
+@dataclass(frozen=True)
+class CurvedRatioBranchRow(_OfRatio, CurvedRodBranchRow):
+    """One point of a branch in it."""
 
 
 @dataclass(frozen=True)

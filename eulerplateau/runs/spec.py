@@ -14,6 +14,7 @@ from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import MeshSpec
 from eulerplateau.runs.loads import Load as Load, Loads, in_order as in_order
 from eulerplateau.runs.loop_spec import LoopSettings
+from eulerplateau.runs.parameters import NEEDED
 from eulerplateau.runs.sweep_spec import BranchSettings, SweepSettings
 from eulerplateau.settings import Model, Settings, read_toml, validate
 
@@ -153,17 +154,20 @@ class RunSpec(Settings):
             raise SpecError(
                 "film.plane", f"needs film.model = 'area'; found {self.film.model!r}"
             )
+        if self.film.plane and self.loop.rest_curvature:
+            problem = "should be false with loop.rest_curvature"
+            raise SpecError("film.plane", problem)
         if self.film.plane and self.output.modes:
             raise SpecError("output.modes", "should be 0 with film.plane = true")
         return self
 
     @model_validator(mode="after")
     def _what_is_varied_is_there(self) -> RunSpec:
-        if self.loop.twist_ratio is None:
-            for key, section in ("sweep", self.sweep), ("branches", self.branches):
-                if section.parameter not in (None, "load"):
-                    problem = f"found {section.parameter!r}; needs loop.twist_ratio"
-                    raise SpecError(f"{key}.parameter", problem)
+        for key, section in ("sweep", self.sweep), ("branches", self.branches):
+            needed = NEEDED.get(section.parameter or "load")
+            if needed is not None and not getattr(self.loop, needed):
+                problem = f"found {section.parameter!r}; needs loop.{needed}"
+                raise SpecError(f"{key}.parameter", problem)
         others = {self.sweep.varied, self.explored} - {"load"}
         if not others and self.film.load is not None:
             problem = "is for runs that vary something else: loads are sweep.loads"

@@ -17,6 +17,7 @@ def make_problem(spec: RunSpec, disk: Disk) -> Problem:
         in_plane=spec.film.plane,
         twist_ratio=spec.loop.twist_ratio,
         link=spec.loop.link or 0.0,
+        rest_curvature=spec.loop.rest_curvature or 0.0,
     )
 
 

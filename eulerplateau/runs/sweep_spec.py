@@ -22,7 +22,7 @@ class SweepSettings(Settings):
     ----------
     loads : list of numbers, ranges {start, stop, step} and refinements
         {onset, nearest, farthest, count}; sorted, each value once.
-    parameter : "load", "link" or "twist_ratio"
+    parameter : "load", "link", "twist_ratio" or "rest_curvature"
         What is varied; by default the load. Another one is varied at the load film.load.
     values : as loads, of that other parameter
     quantity : "kL3_alpha" or "k" for springs, "sigma_hat" or "sigma" for other films
@@ -78,7 +78,7 @@ class BranchSettings(Settings):
 
     Attributes
     ----------
-    parameter : "load", "link" or "twist_ratio"
+    parameter : "load", "link", "twist_ratio" or "rest_curvature"
         What is varied, by default what the sweep varies.
     load_min, load_max : float
         The window of loads, k L^3 / alpha of springs and sigma_hat of other films; by

@@ -16,7 +16,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.film import Film, make_film
-from eulerplateau.loop import Loop, kernels, largest_turning, remove_sliding
+from eulerplateau.loop import Loop, Rod, kernels, largest_turning, remove_sliding
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers.equilibrium import (
     LARGEST_LOAD,
@@ -53,13 +53,15 @@ class Problem:
         in_plane: bool = False,
         twist_ratio: float | None = None,
         link: float = 0.0,
+        rest_curvature: float = 0.0,
     ) -> None:
         """Span a disk by a film: "springs", "dirichlet", "area", or a film of one's own.
 
         `in_plane` keeps a film of true area in the plane of its disk. With `twist_ratio`,
         the rigidities' C / B, the loop resists twist: it was turned `link` times and then
-        welded. Raises SpecError for an unknown film or a wrong number, MeshError for a disk
-        that cannot carry it.
+        welded; by nature it is `rest_curvature` times as curved as a circle of its length.
+        Raises SpecError for an unknown film or a wrong number, MeshError for a disk that
+        cannot carry it.
         """
         if not isinstance(disk, Disk):
             problem = f"found {type(disk).__name__}; read_disk and mesh_polygon return one"
@@ -67,7 +69,8 @@ class Problem:
         made = make_film(disk, film, in_plane=in_plane) if isinstance(film, str) else film
         object.__setattr__(self, "disk", disk)
         object.__setattr__(self, "film", made)
-        object.__setattr__(self, "loop", _loop(disk, in_plane, twist_ratio, link))
+        rod = Rod(twist_ratio, link, rest_curvature)
+        object.__setattr__(self, "loop", rod.loop(disk.rest_lengths, in_plane))
 
     def __repr__(self) -> str:
         """Return one line: the film, and the size of its mesh."""
@@ -260,21 +263,3 @@ class Problem:
         if self.film.folded(found.shape):
             return replace(found, status=Status.FOLDED)
         return found
-
-
-def _loop(disk: Disk, in_plane: bool, twist_ratio: float | None, link: float) -> Loop:
-    """Return the loop of a disk; raises SpecError for numbers that no rod has."""
-    bare = Loop(disk.rest_lengths)
-    if twist_ratio is None:
-        if link != 0.0:
-            raise SpecError("link", "needs twist_ratio: twist that costs nothing is lost")
-        return bare
-    if not (twist_ratio > 0.0 and np.isfinite(twist_ratio)):
-        raise SpecError("twist_ratio", f"found {twist_ratio:g}; should be positive")
-    if not np.isfinite(link):
-        raise SpecError("link", f"found {link:g}; should be a number of turns")
-    # Loaded for such loops only.
-    from eulerplateau.loop import PlaneTwist, Twist
-
-    twist = PlaneTwist if in_plane else Twist
-    return Loop(disk.rest_lengths, {"twist": twist(bare, twist_ratio, link)})

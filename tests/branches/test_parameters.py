@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import brentq
 
 from eulerplateau.branches import BIFURCATION, FilmFamily, FilmPoint, explore
 from eulerplateau.branches.film_family import family_near
@@ -46,9 +47,27 @@ def by_ratio(n_b: int) -> FilmPoint:
     return first_lost(problem, "twist_ratio", ratio)
 
 
+def critical_curvature() -> float:
+    """q at which the disk is lost across its plane: sigma_2(q) = 96 pi^3 [1 - ...]."""
+    g = ROUND
+
+    def left(q: float) -> float:
+        return 1 - q * (q + g) / (q + 4 * g) - NU / 6
+
+    return float(brentq(left, 0.1, 3.0, xtol=1e-14))
+
+
+def by_curvature(n_b: int) -> FilmPoint:
+    """Of a rod without link; the threshold is met from the stable side."""
+    near = critical_curvature()
+    problem = Problem(disk(n_b), "area", twist_ratio=ROUND, rest_curvature=0.93 * near)
+    return first_lost(problem, "rest_curvature", near)
+
+
 @pytest.mark.parametrize(
     ("located", "exact"),
     [
+        (by_curvature, critical_curvature()),
         (by_link, critical_link("area", NU, ROUND, 2)),
         (by_ratio, critical_link("area", NU, 1.5, 2)),
     ],

@@ -16,6 +16,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
+from eulerplateau.loop import directors
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.runs.cell_table import CellRow
@@ -127,7 +128,10 @@ def test_a_loop_that_resists_twist_is_marked_and_the_mark_winds_as_it_is_twisted
     with RunFolder.create(tmp_path / "rod", summary, "sweep", TwistRow) as folder:
         for step, link in enumerate([0.0, turns]):
             row = TwistRow(**asdict(replace(ROW, step=step)), link=link, **own)
-            folder.record(row, mesh, ring @ rotation())
+            x = ring @ rotation()
+            fields = {"director": np.full_like(x, np.nan)}
+            fields["director"][mesh.loop] = directors(x[mesh.loop], link)
+            folder.record(row, mesh, x, fields)
     data = Page(page(collect([tmp_path / "rod", sweep(tmp_path / "bare", mesh, [1.0])])))
     shown, bare = data.data["runs"]
     assert bare["marks"] is None

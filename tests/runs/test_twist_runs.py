@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from eulerplateau.errors import SpecError
-from eulerplateau.loop import directors
-from eulerplateau.mesh import read_vtp, write_mesh
-from eulerplateau.pictures.film_pictures import FILM
+from eulerplateau.loop import CurvedRod, Loop, directors
+from eulerplateau.mesh import Shape, read_disk, read_vtp, write_mesh
+from eulerplateau.pictures.marks import read_marks
 from eulerplateau.runs import read_run, run_branches, run_sweep
 from eulerplateau.runs.ensembles import load_ensemble, run_ensemble
 from eulerplateau.runs.rows import COLUMNS
@@ -112,11 +113,83 @@ def test_shapes_say_which_way_the_rod_points_and_renders_mark_it(
     assert np.isnan(np.delete(director, loop, axis=0)).all()
     expected = directors(stored.points[loop], 0.3 - run.rows[0].writhe)
     np.testing.assert_allclose(director[loop], expected, atol=1e-12)
-    marks = FILM.stage.marks(run.rows[0], stored.points[loop])
+    turn = Rotation.from_rotvec([0.3, -0.4, 1.1])
+    shape = Shape(2 * turn.apply(stored.points) + [1, 2, 3], stored.triangles, loop)
+    marks = read_marks(run.shape_path(run.rows[0]), shape)
     assert marks is not None
-    np.testing.assert_array_equal(marks, expected)
+    np.testing.assert_allclose(marks, turn.apply(director[loop]), atol=1e-9)
     run_sweep(spec(mesh, [300.0]), tmp_path / "bare")
     bare = read_run(tmp_path / "bare")
-    assert FILM.stage.marks(bare.rows[0], stored.points[loop]) is None
-    fields = read_vtp(bare.shape_path(bare.rows[0])).point_fields
-    assert "director" not in fields
+    assert read_marks(bare.shape_path(bare.rows[0]), shape) is None
+
+
+CURVED = {"twist_ratio": 0.75, "link": 0.3, "rest_curvature": 0.5}
+
+
+def test_a_rod_that_is_curved_by_nature_says_so_in_rows_and_shapes(
+    mesh: Path, tmp_path: Path
+) -> None:
+    run_sweep(spec(mesh, [300.0, 320.0], **CURVED), tmp_path / "rod")
+    run = read_run(tmp_path / "rod")
+    assert run.kind.columns == (*COLUMNS, *TWIST, "rest_curvature")
+    lengths = read_disk(mesh).rest_lengths
+    for row in run.rows:
+        assert row.rest_curvature == 0.5
+        stored = read_vtp(run.shape_path(row))
+        x = stored.points[stored.lines[0][:-1]]
+        rod = CurvedRod(Loop(lengths), 0.75, 0.3, 0.5)
+        assert row.writhe == pytest.approx(0.3 - rod.frame(x).turns, abs=1e-12)
+        assert row.twist_energy == pytest.approx(rod.twist_energy(x), rel=1e-9)
+        assert row.twist_moment == pytest.approx(rod.moments(x)[-1], rel=1e-9)
+        own = row.energy - row.film_energy - row.bending_energy
+        assert own == pytest.approx(rod.energy(x), rel=1e-9)
+        director = stored.point_fields["director"][stored.lines[0][:-1]]
+        np.testing.assert_allclose(director, rod.frame(x).directors, atol=1e-9)
+
+
+def test_such_sweeps_go_on_to_the_bit(mesh: Path, tmp_path: Path) -> None:
+    loads = [300.0, 320.0, 340.0]
+    whole = run_sweep(spec(mesh, loads, **CURVED), tmp_path / "whole")
+    run_sweep(spec(mesh, loads[:2], **CURVED), tmp_path / "part")
+    on = run_sweep(spec(mesh, loads, **CURVED), tmp_path / "part", resume=True)
+    assert on.kept == 2
+    assert [row.energy for row in on.rows] == [row.energy for row in whole.rows]
+    assert on.rows[-1].twist_moment == whole.rows[-1].twist_moment
+
+
+def test_a_natural_curvature_of_nought_is_none(mesh: Path, tmp_path: Path) -> None:
+    loop = {"twist_ratio": 0.75, "link": 0.3}
+    run_sweep(spec(mesh, [300.0], **loop), tmp_path / "none")
+    run_sweep(spec(mesh, [300.0], **loop, rest_curvature=0.0), tmp_path / "nought")
+    none, nought = (read_run(tmp_path / name) for name in ("none", "nought"))
+    assert nought.kind is none.kind
+    assert nought.rows[0].energy == none.rows[0].energy
+
+
+def test_branches_of_a_curved_rod_find_where_its_film_leaves_the_plane(
+    mesh: Path, tmp_path: Path
+) -> None:
+    said = {
+        "mesh": {"file": str(mesh)},
+        "loop": {"twist_ratio": 0.75, "rest_curvature": 0.5},
+        "sweep": {"loads": [300.0]},
+        "branches": {"load_min": 300.0, "load_max": 1200.0, "special_points": 0},
+    }
+    result = run_branches(validate(said, RunSpec, "run"), tmp_path / "curved")
+    assert {row.rest_curvature for row in result.rows} == {0.5}
+    assert any("mirror" in point["breaks"] for point in result.special)
+
+
+def test_natural_curvature_without_a_rigidity_or_in_a_plane_is_refused(mesh: Path) -> None:
+    with pytest.raises(SpecError, match=r"loop\.rest_curvature.*twist_ratio"):
+        spec(mesh, [300.0], rest_curvature=1.0)
+    with pytest.raises(SpecError, match="rest_curvature"):
+        spec(mesh, [300.0], twist_ratio=1.0, rest_curvature=-1.0)
+    said = {
+        "mesh": {"file": str(mesh)},
+        "film": {"model": "area", "plane": True},
+        "loop": {"twist_ratio": 0.75, "rest_curvature": 0.5},
+        "sweep": {"loads": [300.0]},
+    }
+    with pytest.raises(SpecError, match=r"film\.plane.*rest_curvature"):
+        validate(said, RunSpec, "run")

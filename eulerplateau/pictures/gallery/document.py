@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eulerplateau.mesh import Shape
 from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
+from eulerplateau.pictures.marks import read_marks
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.runs import Series
 
@@ -104,11 +106,15 @@ def _marks(shown: Exhibit) -> str | None:
 
     None of a run without marks. The positions they belong to are those on the page, turned.
     """
-    marks = pictures_of(shown.run.kind).stage.marks
-    loop = shown.shapes.loop
-    across = [marks(row, x[loop]) for row, x in zip(shown.run.rows, shown.x, strict=True)]
-    drawn = [way for way in across if way is not None]
-    return _base64(np.rint(_INT8 * np.stack(drawn)).astype("i1")) if drawn else None
+    drawn = []
+    for place, row in enumerate(shown.run.rows):
+        triangles, loop = shown.shapes.triangles(place), shown.shapes.loop
+        shape = Shape(shown.x[place], triangles, loop)
+        marks = read_marks(shown.run.shape_path(row), shape)
+        if marks is None:
+            return None
+        drawn.append(marks)
+    return _base64(np.rint(_INT8 * np.stack(drawn)).astype("i1"))
 
 
 def _series(series: Series) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from eulerplateau.errors import OutputError
 from eulerplateau.mesh import Shape, write_whole
 from eulerplateau.mesh.drawing import View, turning_views
 from eulerplateau.pictures.kinds import Stage
+from eulerplateau.pictures.marks import read_marks
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.render.choice import chosen_steps
 from eulerplateau.pictures.render.colours import (
@@ -125,7 +126,7 @@ class RunPictures:
     def _picture(self, scene: Scene, place: int, shape: Shape, view: View) -> Pixels:
         values = self.fields.get(place)
         film = coloured_film(shape, view.eye, self.colour, values, self.scale)
-        marks = self.stage.marks(self.run.rows[place], shape.x_loop)
+        marks = read_marks(self.run.shape_path(self.run.rows[place]), shape)
         colours = loop_colours(shape, values, self.scale)
         pixels = scene.pixels(shape, film, colours, marks, view)
         return captioned(pixels, caption(self.run.rows[place]), self.scale)

@@ -7,7 +7,12 @@ import json
 import click
 
 # What the command line calls the arguments of `rod_film`.
-_OPTIONS = {"load": "--sigma-hat", "twist_ratio": "--twist-ratio", "link": "--link"}
+_OPTIONS = {
+    "load": "--sigma-hat",
+    "twist_ratio": "--twist-ratio",
+    "link": "--link",
+    "rest_curvature": "--rest-curvature",
+}
 
 
 @click.command()
@@ -25,9 +30,20 @@ _OPTIONS = {"load": "--sigma-hat", "twist_ratio": "--twist-ratio", "link": "--li
     help="C/B, the rod's rigidity to twist over that to bending; by default 0.",
 )
 @click.option("--link", type=float, default=0.0, help="Turns before the rod was welded.")
+@click.option(
+    "--rest-curvature",
+    type=float,
+    default=0.0,
+    help="The rod's natural curvature over 2 pi / L; not with a link.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, in full precision.")
 def film(
-    sigma_hat: float, start: str, twist_ratio: float, link: float, as_json: bool
+    sigma_hat: float,
+    start: str,
+    twist_ratio: float,
+    link: float,
+    rest_curvature: float,
+    as_json: bool,
 ) -> int:
     """Print the numbers of a film of true area, to ten digits (L = 1, energies in alpha/L).
 
@@ -39,13 +55,13 @@ def film(
     from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, SpecError
     from eulerplateau.threads import one_thread
 
+    rod = sigma_hat, twist_ratio, link, rest_curvature
     try:
         with one_thread():
             if start == Start.EIGHT.value:
-                numbers = pinched_eight(sigma_hat, twist_ratio, link).numbers()
+                numbers = pinched_eight(*rod).numbers()
             else:
-                found = rod_film(Start(start), sigma_hat, twist_ratio, link)
-                numbers = found.numbers()
+                numbers = rod_film(Start(start), *rod).numbers()
     except SpecError as error:
         key, problem = error.args
         raise SpecError(_OPTIONS.get(key, key), problem) from None

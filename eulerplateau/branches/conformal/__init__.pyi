@@ -5,9 +5,10 @@ from .by_writhe import (
     films_by_writhe as films_by_writhe,
     stiffness as stiffness,
 )
+from .curved import NoFilmError as NoFilmError
+from .curved_family import CurvedFamily as CurvedFamily
 from .family import SmoothFamily as SmoothFamily, smooth_family as smooth_family
 from .films import (
-    NoFilmError as NoFilmError,
     RodFilm as RodFilm,
     Start as Start,
     rod_film as rod_film,

@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, cast
 
+import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.conformal.rod_term import SmoothRod
 from eulerplateau.branches.conformal.terms import (
     SmoothBending,
     SmoothFilm,
@@ -48,7 +50,7 @@ class SmoothFamily:
     @cached_property
     def unknowns(self) -> Unknowns:
         """What stands for a loop."""
-        return Unknowns.of(self.basis)
+        return Unknowns.of(self.basis, np.zeros(0))
 
     def energy(self, value: float) -> LoopEnergy:
         """Return the energy at a value of the parameter."""
@@ -60,13 +62,12 @@ class SmoothFamily:
         return LoopEnergy(
             terms=terms,
             constraint=WholeLength(self.unknowns),
-            # Distances of loops are those of their tangents by the angle.
-            weights=(self.basis.wavenumbers * self.unknowns.scale) ** 2,
+            weights=self.unknowns.weights,
             free_motions=self._free_motions,
         )
 
-    def twist(self, value: float) -> SmoothTwist:
-        """Return the term of the rod's twist at a value of the parameter."""
+    def twist(self, value: float) -> SmoothTwist | SmoothRod:
+        """Return what the rod's energy has beside its bending at a value."""
         values = self._values(value)
         return SmoothTwist(self.unknowns, values["twist_ratio"], values["link"])
 
@@ -115,9 +116,18 @@ class SmoothFamily:
         """Return the spectrum among all loops, not those of the basis's symmetry alone."""
         basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
         family = replace(self, basis=basis)
-        whole = basis.embed(self.basis, self.unknowns.loop(point.x).coefficients)
         energy = family.energy(point.value)
-        return stability(tangent_model(energy, family.unknowns.x(whole)))
+        return stability(tangent_model(energy, family.carried(self, point.x)))
+
+    def carried(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
+        """Return what stands here for a film of another family, of the same grid."""
+        coefficients = other.unknowns.loop(x).coefficients
+        return self.unknowns.x(self.basis.embed(other.basis, coefficients))
+
+    def transferred(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
+        """Return what stands here for a film of another family, theta kept."""
+        coefficients = other.unknowns.loop(x).coefficients
+        return self.unknowns.x(self.basis.transfer(other.basis, coefficients))
 
     def _values(self, value: float) -> Mapping[str, float]:
         return {**self.values, self.parameter: value}

@@ -16,10 +16,11 @@ from itertools import chain, pairwise
 from scipy.optimize import brentq
 
 from eulerplateau.branches.conformal.by_writhe import CONTROL, films_by_writhe
+from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
 from eulerplateau.branches.point import BranchPoint, point_near
-from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError, SpecError
+from eulerplateau.errors import SpecError
 from eulerplateau.exact import finite
 from eulerplateau.exact.conformal import (
     BUCKLING,
@@ -33,16 +34,12 @@ from eulerplateau.exact.conformal import (
 
 _ROUND_HARMONICS = 16
 _FOUND = 1e-13
+# Waist, in L, down to which a film is followed: then it pinches.
+_NARROWEST = 1e-3
 
 
 # Neighbours on a branch, and what is looked for between them.
 Neighbours = tuple[BranchPoint, BranchPoint, "_Held"]
-
-
-class NoFilmError(EulerPlateauError):
-    """There is no film of a branch at the link asked for, or none that is resolved."""
-
-    exit_code = NOT_CONVERGED_EXIT_CODE
 
 
 class Start(Enum):
@@ -100,7 +97,11 @@ class RodFilm:
 
 
 def rod_film(
-    start: Start, load: float, twist_ratio: float = 0.0, link: float = 0.0
+    start: Start,
+    load: float,
+    twist_ratio: float = 0.0,
+    link: float = 0.0,
+    rest_curvature: float = 0.0,
 ) -> RodFilm:
     """Return the film that a start leads to at a load, with a rod turned `link` times.
 
@@ -113,37 +114,56 @@ def rod_film(
     link : float
         Lk, in turns. Lobes of a negative one are the mirror image; a twisted film is
         right-handed where it starts, with no link.
+    rest_curvature : float
+        q = k0 L / 2 pi, of a rod of link 0: the film is followed to it as well.
 
     Raises
     ------
     SpecError : for a load at which there is no such start, or another wrong number
     NoFilmError : where the branch folds before it comes to the link, or ends pinched
     """
-    checked(load, twist_ratio, link)
-    values = {"load": load, "twist_ratio": twist_ratio, "link": link}
-    if start is Start.DISK:
-        return _flat_disk(values)
+    checked(load, twist_ratio, link, rest_curvature)
     if start is Start.LOBES and link < 0:
         return _mirror_image(rod_film(start, load, twist_ratio, -link))
+    values = {"load": load, "twist_ratio": twist_ratio, "link": link}
+    found = _straight_rod(start, values)
+    return _measured(curved(found, rest_curvature) if rest_curvature else found)
+
+
+def _straight_rod(start: Start, values: Mapping[str, float]) -> BranchPoint:
+    """Return the film that a start leads to, with a rod that is straight by nature."""
+    load, twist_ratio, link = values["load"], values["twist_ratio"], values["link"]
+    if start is Start.DISK:
+        return _flat_disk(values)
     if start is Start.LOBES and load <= BUCKLING:
         problem = (
             f"found {load:g}; lobes exist above {BUCKLING:.6g}, where the disk buckles"
         )
         raise SpecError("load", problem)
-    path = films_by_writhe(load)
+    path = films_by_writhe(load, _NARROWEST)
     if start is Start.LOBES and link == 0.0:
         return _with_rod(next(iter(path)), values)
     between = _between if start is Start.LOBES else _twisted_between
     return _with_rod(_located(*between(path, _Held(twist_ratio, link))), values)
 
 
-def checked(load: float, twist_ratio: float, link: float) -> None:
+def checked(
+    load: float, twist_ratio: float, link: float, rest_curvature: float = 0.0
+) -> None:
     """Raise SpecError for what is no number, or has no meaning."""
     if finite("load", load) == 0:
         raise SpecError("load", "found 0; should be above: no film shapes the loop then")
     finite("twist_ratio", twist_ratio)
     if finite("link", abs(link)) != 0 and twist_ratio == 0:
         raise SpecError("link", "needs a twist ratio: twist that costs nothing is lost")
+    if finite("rest_curvature", rest_curvature) == 0:
+        return
+    if twist_ratio == 0:
+        problem = "needs a twist ratio: a rod that twists for nothing turns as it likes"
+        raise SpecError("rest_curvature", problem)
+    if link != 0:
+        problem = "should be 0 with a rest curvature: a rod that was turned has a weld"
+        raise SpecError("link", f"{problem}, which meshes know")
 
 
 @dataclass(frozen=True)
@@ -220,17 +240,17 @@ def _located(before: BranchPoint, after: BranchPoint, held: _Held) -> BranchPoin
     return at(float(brentq(off, before.value, after.value, xtol=_FOUND)))
 
 
-def _with_rod(point: BranchPoint, values: Mapping[str, float]) -> RodFilm:
+def _with_rod(point: BranchPoint, values: Mapping[str, float]) -> BranchPoint:
     """Return the film next to a point, with its rod's own twist ratio and link."""
     found = point_near(
         SmoothFamily(smooth_family(point).basis, values), point.x, values["load"]
     )
     if found is None:
         raise NoFilmError("Newton's method fails at the link asked for: the branch folds")
-    return _measured(resolved(found, CONTROL))
+    return resolved(found, CONTROL)
 
 
-def _flat_disk(values: Mapping[str, float]) -> RodFilm:
+def _flat_disk(values: Mapping[str, float]) -> BranchPoint:
     """Return the disk, which is in equilibrium at every link."""
     turns = math.ceil(values["twist_ratio"] * abs(values["link"]))
     basis = make_basis(_ROUND_HARMONICS + 2 * turns, TWISTED)
@@ -239,7 +259,7 @@ def _flat_disk(values: Mapping[str, float]) -> RodFilm:
     found = point_near(family, flat, values["load"])
     if found is None:
         raise NoFilmError("Newton's method fails at the disk")
-    return _measured(found)
+    return found
 
 
 def _measured(point: BranchPoint) -> RodFilm:
@@ -251,7 +271,7 @@ def _measured(point: BranchPoint) -> RodFilm:
         twist_ratio=twist.ratio,
         link=twist.link,
         energy=film.energy + twist.energy(point.x),
-        twist_energy=twist.energy(point.x),
+        twist_energy=twist.twist_energy(point.x),
         writhe=twist.writhe(point.x),
         twist_moment=twist.moment(point.x),
         n_unstable=family.in_space(point).n_unstable,

@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass
 
 from eulerplateau.branches.conformal.films import checked
+from eulerplateau.errors import SpecError
 from eulerplateau.exact.conformal import flat_eight
 
 
@@ -40,12 +41,17 @@ class PinchedEight:
         return {**vars(self), "waist": 0.0, "status": "pinched"}
 
 
-def pinched_eight(load: float, twist_ratio: float = 0.0, link: float = 0.0) -> PinchedEight:
+def pinched_eight(
+    load: float, twist_ratio: float = 0.0, link: float = 0.0, rest_curvature: float = 0.0
+) -> PinchedEight:
     """Return the flat eight at a load, and what twist does to its pinch.
 
-    Parameters are those of `rod_film`. Raises SpecError for wrong ones.
+    Parameters are those of `rod_film`. Raises SpecError for wrong ones, and for a rod that
+    is curved by nature: the frame that it has in an eight is not known here.
     """
-    checked(load, twist_ratio, link)
+    checked(load, twist_ratio, link, rest_curvature)
+    if rest_curvature != 0.0:
+        raise SpecError("rest_curvature", "should be 0 where the film is pinched")
     flat = flat_eight(load)
     writhe = math.copysign(1.0, link)
     moment = 4 * math.pi * twist_ratio * (link - writhe)

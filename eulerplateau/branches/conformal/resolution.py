@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.conformal.family import smooth_family
 from eulerplateau.branches.point import (
     BranchPoint,
@@ -40,15 +39,11 @@ def in_basis(point: BranchPoint, basis: Basis, control: StepControl) -> BranchPo
     """Return the same film in another basis of its symmetry; None if it is not found."""
     old = smooth_family(point)
     family = replace(old, basis=basis)
-
-    def moved(x: FloatArray) -> FloatArray:
-        coefficients = basis.transfer(old.basis, old.unknowns.loop(x).coefficients)
-        return family.unknowns.x(coefficients)
-
-    found = point_near(family, moved(point.x), point.value)
+    found = point_near(family, family.transferred(old, point.x), point.value, control.least)
     if found is None:
         return None
-    way = Direction(moved(point.direction.displacement), point.direction.rate)
+    ahead = family.transferred(old, point.direction.displacement)
+    way = Direction(ahead, point.direction.rate)
     found = correct(family, found.x, found.value, way, control)
     return None if found is None else replace(found, arclength=point.arclength)
 

@@ -55,43 +55,66 @@ class SmoothLoop:
 
 @dataclass(frozen=True)
 class Unknowns:
-    """What stands for a loop of a basis, and back.
+    """What stands for a loop of a basis, and for a frame along it if that is asked for.
 
     Attributes
     ----------
-    scale : (size,) float, coefficients per unknown
+    scale : (size,) float, coefficients of the loop per unknown
+    frame_scale : (m,) float, those of the frame; none of a rod that is straight by nature
     """
 
     basis: Basis
     scale: FloatArray
+    frame_scale: FloatArray
     _known: list[tuple[FloatArray, SmoothLoop]] = field(default_factory=list, repr=False)
 
     @classmethod
-    def of(cls, basis: Basis) -> Unknowns:
-        """Return those in which every harmonic is about as stiff as every other."""
-        return cls(basis, precondition(basis))
+    def of(cls, basis: Basis, frame_waves: FloatArray) -> Unknowns:
+        """Return those in which every harmonic is about as stiff as every other.
+
+        frame_waves : (m,) float, the wavenumbers of the frame
+        """
+        return cls(basis, precondition(basis), 1 / np.sqrt(1 + frame_waves**2))
+
+    @property
+    def scales(self) -> FloatArray:
+        """Coefficients of loop and frame per unknown."""
+        return np.concatenate([self.scale, self.frame_scale])
+
+    @property
+    def weights(self) -> FloatArray:
+        """The norm's: of the loop's tangents by the angle, and of the frame's angles."""
+        tangents = (self.basis.wavenumbers * self.scale) ** 2
+        return np.concatenate([tangents, self.frame_scale**2])
 
     def loop(self, x: FloatArray) -> SmoothLoop:
-        """Return the loop of x (size, 1)."""
+        """Return the loop of x (size + m, 1)."""
         for place, known in self._known:
             if np.array_equal(place, x):
                 return known
-        found = SmoothLoop(self.basis, self.scale * x[:, 0])
+        found = SmoothLoop(self.basis, self.scale * x[: self.basis.size, 0])
         self._known[:] = [(x.copy(), found), *self._known[: _KEPT - 1]]
         return found
 
-    def x(self, coefficients: FloatArray) -> FloatArray:
-        """Return x (size, 1) of coefficients (size,)."""
-        return (coefficients / self.scale)[:, None]
+    def others(self, x: FloatArray) -> FloatArray:
+        """Return the coefficients (m,) of the frame."""
+        found: FloatArray = self.frame_scale * x[self.basis.size :, 0]
+        return found
+
+    def x(self, coefficients: FloatArray, frame: FloatArray | None = None) -> FloatArray:
+        """Return x (size + m, 1) of coefficients (size,), and of the frame's or none."""
+        angles = np.zeros(len(self.frame_scale)) if frame is None else frame
+        return (np.concatenate([coefficients, angles]) / self.scales)[:, None]
 
     def slope(self, gradient: FloatArray) -> FloatArray:
-        """Return the derivative (size, 1) by x of a gradient (size,) by coefficients."""
-        return (self.scale * gradient)[:, None]
+        """Return the derivative (size + m, 1) by x of a gradient (size,) by the loop's."""
+        return np.concatenate([self.scale * gradient, 0 * self.frame_scale])[:, None]
 
     def curvature(self, hessian: FloatArray) -> FloatArray:
-        """Return the second derivative (size, size) by x of that by coefficients."""
+        """Return the second derivative by x of that (size, size) by coefficients."""
+        m = len(self.frame_scale)
         curved: FloatArray = self.scale[:, None] * hessian * self.scale
-        return curved
+        return np.pad(curved, (0, m)) if m else curved
 
 
 @dataclass(frozen=True)
@@ -159,6 +182,10 @@ class SmoothTwist(Term):
         """Whether a loop and its mirror image differ in energy: if it was turned."""
         return self.link != 0.0
 
+    def twist_energy(self, x: FloatArray) -> float:
+        """Return the twisting energy: all of it."""
+        return self.energy(x)
+
     def writhe(self, x: FloatArray) -> float:
         """Return Wr."""
         return self.unknowns.loop(x).writhe
@@ -219,8 +246,10 @@ class WholeLength:
         return float(tensions[0]) * second
 
     def project(self, x: FloatArray) -> FloatArray | None:
-        """Return the loop of that length and the same shape."""
-        return x / loop_length(self.unknowns.loop(x).curve)
+        """Return the loop of that length and the same shape, with the same frame."""
+        found = x.copy()
+        found[: self.unknowns.basis.size] /= loop_length(self.unknowns.loop(x).curve)
+        return found
 
     def turns(self, x: FloatArray) -> EdgeTurns | None:
         """Return None: there are no edges."""

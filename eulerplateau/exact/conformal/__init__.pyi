@@ -43,6 +43,7 @@ from .geometry import (
     surface as surface,
     waist as waist,
 )
+from .jets import Jet as Jet, dot as dot, variables as variables
 from .lobes import BUCKLING as BUCKLING, two_lobes as two_lobes
 from .relaxation import relax as relax
 from .second_variation import (

@@ -176,9 +176,12 @@ class Basis:
 
     def transfer(self, other: Basis, coefficients: FloatArray) -> FloatArray:
         """Return the coefficients here of a loop of another basis, theta kept."""
-        u = self.grading.stretch * (self.phi - pi / 2)
-        sn, cn, _ = self.grading.functions(u)
-        return self.project(other.at(coefficients, other.grading.phi(sn, cn)).x)
+        return self.project(other.at(coefficients, self.phi_of(other)).x)
+
+    def phi_of(self, other: Basis) -> FloatArray:
+        """Return another basis's phi (n,) at the points of the grid here."""
+        sn, cn, _ = self.grading.functions(self.grading.stretch * (self.phi - pi / 2))
+        return other.grading.phi(sn, cn)
 
     def embed(self, other: Basis, coefficients: FloatArray) -> FloatArray:
         """Return the coefficients here of a loop of the same grid, harmonic by harmonic."""

@@ -49,7 +49,7 @@ DISK_LOADS = (
     1250.0,
     1290.0,
 )
-TURNS = (0.25, 0.5, 0.75, 0.9)
+TURNS = (0.25, 0.5, 0.75)
 # Films that are computed on meshes too: load, C/B and link.
 BOTH = ((1700.0, 2 / 3, 0.25), (1600.0, 1.0, 0.5))
 EDGES = (96, 128, 192, 256)
@@ -95,7 +95,7 @@ def _by_load(curves: dict[float, list[Row]]) -> Iterator[tuple[str, ...]]:
             f"{answer.load:g}",
             beside,
             f"{answer.every:.4f}",
-            f"{answer.twisted:.4f}",
+            f"{answer.twisted:.4f}" if answer.twisted > 0 else "-",
             str(len(rows)),
             f"{max(row.tail for row in rows):.0e}",
             f"{max(row.balance for row in rows):.0e}",

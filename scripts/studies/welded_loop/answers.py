@@ -11,7 +11,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from eulerplateau.branches.conformal import critical_moment
 from eulerplateau.exact.conformal import BUCKLING
-from scripts.studies.welded_loop.curves import Row, first_rows, ratio_at_no_writhe
+from scripts.studies.welded_loop.curves import NONE, Row, first_rows, ratio_at_no_writhe
 
 ISOTROPIC = (2 / 3, 1.0)
 
@@ -40,7 +40,9 @@ def at_load(rows: list[Row]) -> Load:
         load=rows[0].load,
         flat=ratio_at_no_writhe(rows)[0],
         every=max(row.ratio for row in rows),
-        twisted=max(-row.moment / (4 * pi * row.writhe) for row in rows if row.writhe > 0),
+        twisted=max(
+            -row.moment / (4 * pi * row.writhe) for row in rows if row.writhe > NONE
+        ),
         steepest=max(rows, key=lambda row: row.ratio).writhe,
     )
 

@@ -21,7 +21,7 @@ from eulerplateau.exact.conformal import edge, waist
 # Of so many films one is looked at among loops of any symmetry.
 _LOOKED_AT = 6
 # Writhe that is none.
-_FLAT = 1e-9
+NONE = 1e-9
 LOADS = (
     *(100.0, 500.0, 1000.0, 1200.0, 1400.0, 1500.0, 1600.0, 1700.0),
     *(1800.0, 1900.0, 2000.0, 2100.0, 2200.0, 2300.0),
@@ -98,7 +98,7 @@ def ratio_at_no_writhe(rows: list[Row]) -> tuple[float, float]:
     And how that changes with the writhe: with its square beside lobes, with the writhe
     itself beside the disk. Of the first rows, by a polynomial through four of them.
     """
-    lobes = abs(rows[0].writhe) < _FLAT
+    lobes = abs(rows[0].writhe) < NONE
     near = rows[:4]
     at = np.array([row.writhe**2 if lobes else row.writhe for row in near])
     curve = np.polynomial.Polynomial.fit(at, [row.ratio for row in near], 3).convert()

@@ -1,0 +1,129 @@
+"""The frame of a rod that is curved by nature, along a loop without a mesh.
+
+With z the axis across the flat film, t the tangent, which is nowhere along z,
+
+    u = (z - (z.t) t) / s,  v = t x u,  s = |z - (z.t) t|,  d_1 = cos(psi) u + sin(psi) v,
+
+the direction d_1 in which the rod is curved by nature turns by the angle psi. Then
+
+    k_1 ds = (cos(psi) t'.z + sin(psi) t'.(t x z)) / s dphi,
+    Omega ds = (psi' - (z.t) t'.(t x z) / s^2) dphi,
+
+primes being derivatives by phi. On a flat loop that lies in its own plane by nature d_1 is
+its normal, psi = -pi/2, and so psi = -pi/2 + chi, chi a trigonometric polynomial: the rod
+was not turned before it was welded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.exact.conformal import GENERAL, Basis, Curve, Jet, dot, variables
+
+
+@dataclass(frozen=True)
+class Frames:
+    """What stands for chi along the loops of a basis: coefficients of cos and sin k phi.
+
+    With the half-turns of the loops of `basis`, chi is a sum of sines of even k.
+    """
+
+    basis: Basis
+
+    @cached_property
+    def columns(self) -> list[tuple[str, int]]:
+        """("cos" or "sin", k) of each coefficient."""
+        most = self.basis.harmonics
+        if self.basis.family is GENERAL:
+            waves = [(kind, k) for k in range(1, most + 1) for kind in ("cos", "sin")]
+            return [("cos", 0), *waves]
+        return [("sin", k) for k in range(2, most + 1, 2)]
+
+    @cached_property
+    def wavenumbers(self) -> FloatArray:
+        """The k of each coefficient."""
+        return np.array([k for _, k in self.columns], dtype=np.float64)
+
+    @cached_property
+    def _values(self) -> tuple[FloatArray, FloatArray]:
+        return self._at(self.basis.phi)
+
+    def _at(self, phi: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the columns' values and derivatives, (n, m) each."""
+        angle = np.outer(phi, self.wavenumbers)
+        cosine, sine, k = np.cos(angle), np.sin(angle), self.wavenumbers
+        even = np.array([kind == "cos" for kind, _ in self.columns])
+        return np.where(even, cosine, sine), np.where(even, -k * sine, k * cosine)
+
+    @cached_property
+    def design(self) -> FloatArray:
+        """The derivative (n, 8, size + m) of (x', x'', psi, psi') by all unknowns."""
+        size = self.basis.size
+        found = np.zeros((len(self.basis.phi), 8, size + len(self.columns)))
+        for axis, part in enumerate(self.basis.slices):
+            found[:, axis, part] = self.basis.matrices[axis][1]
+            found[:, 3 + axis, part] = self.basis.matrices[axis][2]
+        found[:, 6, size:], found[:, 7, size:] = self._values
+        return found
+
+    def angle(self, chi: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return psi and its derivative by phi, (n,) each."""
+        values, slopes = self._values
+        return values @ chi - pi / 2, slopes @ chi
+
+    def bent_and_twisted(self, curve: Curve, chi: FloatArray) -> tuple[Jet, Jet, Jet]:
+        """Return k_1 ds/dphi, Omega ds/dphi and ds/dphi by (x', x'', psi, psi')."""
+        psi, rate = self.angle(chi)
+        given = np.column_stack([curve.x1, curve.x2, psi, rate])
+        px, py, pz, qx, qy, qz, angle, turning = variables(given)
+        p, q = [px, py, pz], [qx, qy, qz]
+        u = dot(p, p)
+        speed = u.power(0.5)
+        # s^2 u, and t'.z and t'.(t x z) times u / speed.
+        flat = px * px + py * py
+        upwards = qz - dot(p, q) * pz / u
+        sideways = (qx * py - qy * px) / u
+        bent = angle.cos() * upwards + angle.sin() * sideways * speed
+        bent = bent / flat.power(0.5)
+        twisted = turning - pz * sideways * speed / flat
+        return bent, twisted, speed
+
+    def embed(self, other: Frames, chi: FloatArray) -> FloatArray:
+        """Return the coefficients here of another frame's, harmonic by harmonic."""
+        there = dict(zip(other.columns, chi, strict=True))
+        return np.array([there.get(column, 0.0) for column in self.columns])
+
+    def even(self, curve: Curve) -> FloatArray:
+        """Return the coefficients (m,) of the frame that is twisted evenly along a loop."""
+        _, twisted, speed = self.bent_and_twisted(curve, np.zeros(len(self.columns)))
+        mean = twisted.value.mean() / speed.value.mean()
+        _, slopes = self._values
+        sizes = (slopes**2).sum(axis=0)
+        share = slopes.T @ (mean * speed.value - twisted.value)
+        return np.divide(share, sizes, out=np.zeros_like(share), where=sizes > 0)
+
+    def transfer(self, other: Frames, chi: FloatArray) -> FloatArray:
+        """Return the coefficients here of another frame's, theta kept."""
+        values, _ = other._at(self.basis.phi_of(other.basis))
+        return self.project(values @ chi)
+
+    def turned(self, curve: Curve, axis: FloatArray) -> FloatArray:
+        """Return how psi (n,) changes where loop and frame turn about an axis (3,).
+
+        d_1 turns about t by axis.t, and u by -(z.t) (axis x t).v / s.
+        """
+        t = curve.x1 / np.linalg.norm(curve.x1, axis=1)[:, None]
+        z = np.array([0.0, 0.0, 1.0])
+        across = np.cross(t, z)
+        swung = (np.cross(axis, t) * across).sum(axis=1) / (across**2).sum(axis=1)
+        return t @ axis + t[:, 2] * swung
+
+    def project(self, angles: FloatArray) -> FloatArray:
+        """Return the coefficients (m,) of angles (n,) at the grid, least squares."""
+        values, _ = self._values
+        return values.T @ angles / (values**2).sum(axis=0)

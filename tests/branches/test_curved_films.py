@@ -1,0 +1,167 @@
+"""Films without a mesh whose rod is curved by nature: thresholds, balance, limits."""
+
+from functools import cache
+from itertools import pairwise
+from math import inf, pi
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from eulerplateau.branches import StepControl, branches_from, first_point, follow
+from eulerplateau.branches.conformal import (
+    CurvedFamily,
+    NoFilmError,
+    Start,
+    film_of,
+    resolved,
+    rod_film,
+)
+from eulerplateau.branches.point import point_near
+from eulerplateau.branches.special import special_points
+from eulerplateau.errors import SpecError
+from eulerplateau.exact.conformal import GENERAL, TWISTED, disk, edge, make_basis
+from eulerplateau.exact.planar import planar_film
+from eulerplateau.solvers import tangent_model
+
+
+def family_of_disk(basis, load, ratio, curvature, parameter):
+    """Return the family and the disk in it."""
+    values = {"load": load, "twist_ratio": ratio, "link": 0.0, "rest_curvature": curvature}
+    family = CurvedFamily(basis, values, parameter)
+    return family, family.unknowns.x(disk(basis, load).coefficients)
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+@pytest.mark.parametrize(("q", "g"), [(0.3, 1.0), (0.5, 0.75), (1.0, 2 / 3), (1.4, 0.5)])
+def test_disk_is_lost_across_its_plane_where_the_theory_says(n, q, g):
+    """sigma_n = 16 pi^3 n (n + 1) [1 - q (q + g) / (q + g n^2)], to 1e-10."""
+    expected = 16 * pi**3 * n * (n + 1) * (1 - q * (q + g) / (q + g * n * n))
+    basis = make_basis(n + 3, TWISTED if n % 2 == 0 else GENERAL)
+
+    def eigenvalue(load):
+        model = tangent_model(
+            family_of_disk(basis, load, g, q, "load")[0].energy(load),
+            family_of_disk(basis, load, g, q, "load")[1],
+        )
+        return model.eigenvalues[np.abs(model.eigenvalues).argmin()]
+
+    found = brentq(eigenvalue, 0.9999 * expected, 1.0001 * expected, xtol=1e-12, rtol=1e-14)
+    assert found == pytest.approx(expected, rel=1e-10)
+
+
+def test_natural_curvature_leaves_planar_films_and_shifts_their_energy():
+    flat, known = rod_film(Start.LOBES, 1600.0, 0.75, 0.0, 0.6), planar_film(2, 1600.0)
+    natural = 2 * pi * 0.6
+    shift = natural**2 - 4 * pi * natural
+    assert flat.energy == pytest.approx(known.energy + shift, rel=1e-10)
+    assert flat.film.area == pytest.approx(known.area, rel=1e-10)
+    assert flat.twist_energy == pytest.approx(0, abs=1e-20)
+
+
+@cache
+def saddle():
+    """Return the film that leaves the disk across its plane, at q = 1.6 and 744."""
+    basis = make_basis(24, TWISTED)
+    family, flat = family_of_disk(basis, 24 * pi**3, 0.75, 1.3, "rest_curvature")
+    control = StepControl(
+        (1.2, 1.6), unit=1.0, largest_step=0.1, first_step=0.05, least=-inf
+    )
+    first = first_point(family, flat, 1.3, control)
+    for before, after in pairwise([first, *follow(first, control)]):
+        for special in special_points(before, after, control):
+            for side in branches_from(special, control):
+                *_, last = follow(side, control)
+                landed = point_near(family, last.x, 1.6)
+                return resolved(landed, control)
+    raise AssertionError("the disk stays stable")
+
+
+def imbalance(point):
+    """Return max |F' + sigma T| / sigma with a frame.
+
+    m = 2 kappa b - 2 k0 t x d_1 + C Omega t,  F = (F.t) t + t x m',  (F.t)' = F.t'.
+    """
+    family, film = point.family, film_of(point)
+    frame, loop = edge(film), family.unknowns.loop(point.x)
+    rod = family.twist(point.value)
+    chi = family.unknowns.others(point.x)
+    _, twisted, speed = family.frames.bent_and_twisted(loop.curve, chi)
+    psi, _ = family.frames.angle(chi)
+    t, bent = frame.tangent, frame.curvature
+    u = np.array([0, 0, 1.0]) - t[:, 2:] * t
+    u /= np.linalg.norm(u, axis=1)[:, None]
+    normal = np.cos(psi)[:, None] * u + np.sin(psi)[:, None] * np.cross(t, u)
+
+    def by_length(values):
+        series = np.fft.rfft(values, axis=0)
+        k = 1j * np.arange(len(series))[:, None]
+        k[-1] = 0
+        return np.fft.irfft(k * series, n=len(values), axis=0) / frame.speed[:, None]
+
+    twist = 2 * rod.ratio * (twisted.value / speed.value)[:, None]
+    natural = 2 * pi * rod.rest_curvature
+    moment = 2 * np.cross(t, bent) - 2 * natural * np.cross(t, normal) + twist * t
+    across = np.cross(t, by_length(moment))
+    slope = (across * bent).sum(axis=1) * frame.speed
+    series = np.fft.rfft(slope)
+    k = np.arange(1, len(series))
+    series[1:] = series[1:] / (1j * k)
+    along = np.fft.irfft(series - np.r_[series[0], 0 * k], n=len(slope))[:, None]
+    pull = film.load * frame.conormal
+    off = by_length(along * t + across) + pull
+    # The mean tension is what is left to choose: it adds beta t'.
+    beta = -(off * bent).sum() / (bent**2).sum()
+    return float(np.linalg.norm(off + beta * bent, axis=1).max() / film.load)
+
+
+def test_saddle_of_a_curved_rod_is_stable_and_balanced():
+    """q = 1.6, C/B = 0.75, sigma = 24 pi^3: off its plane, without a mesh."""
+    point = saddle()
+    assert film_of(point).tail < 1e-10
+    assert edge(film_of(point)).abs_kappa_n > 1
+    stability = point.family.in_space(point)
+    assert stability.n_unstable == 0
+    # What costs nothing, turning and sliding, has been taken out with its frame.
+    assert stability.eigenvalues[0] > 1
+    assert imbalance(point) < 1e-8
+
+
+def test_energy_of_the_saddle_changes_by_the_bending_it_lacks():
+    """dE/dq = 2 pi (2 k0 - 2 oint k_1 ds), E along the branch by differences."""
+    point, h = saddle(), 1e-3
+    energies = []
+    for q in (1.6 - h, 1.6 + h):
+        near = point_near(point.family, point.x, q)
+        film = film_of(near)
+        energies.append(film.energy + near.family.twist(q).energy(near.x))
+    rod = point.family.twist(point.value)
+    natural = 2 * pi * rod.rest_curvature
+    besides = rod.energy(point.x) - rod.twist_energy(point.x)
+    bent = (natural**2 - besides) / (2 * natural)
+    expected = 2 * pi * (2 * natural - 2 * bent)
+    assert (energies[1] - energies[0]) / (2 * h) == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.slow
+def test_rod_that_is_hardly_curved_is_nearly_a_straight_one():
+    """E(q) - E(0) tends to a multiple of q: the frame follows the curvature freely."""
+    straight = rod_film(Start.TWISTED, 1700.0, 0.05)
+    one, two = (rod_film(Start.TWISTED, 1700.0, 0.05, 0.0, q) for q in (0.002, 0.004))
+    first, second = one.energy - straight.energy, two.energy - straight.energy
+    assert first < 0
+    assert second / first == pytest.approx(2, rel=0.02)
+    assert one.writhe == pytest.approx(straight.writhe, abs=0.01)
+
+
+def test_what_is_not_known_is_refused():
+    with pytest.raises(SpecError, match="weld"):
+        rod_film(Start.LOBES, 1700.0, 0.7, 0.25, 0.5)
+    with pytest.raises(SpecError, match="twist ratio"):
+        rod_film(Start.LOBES, 1700.0, 0.0, 0.0, 0.5)
+
+
+@pytest.mark.slow
+def test_branch_that_folds_on_the_way_is_refused():
+    with pytest.raises(NoFilmError, match="folds near the rest curvature 0"):
+        rod_film(Start.TWISTED, 1700.0, 0.05, 0.0, 0.5)

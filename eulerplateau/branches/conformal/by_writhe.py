@@ -14,11 +14,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import resolved
+from eulerplateau.branches.conformal.terms import SmoothTwist
 from eulerplateau.branches.continuation import Place, next_place
 from eulerplateau.branches.point import BranchPoint, StepControl, first_point, point_near
 from eulerplateau.exact.conformal import (
@@ -89,7 +91,8 @@ def film_of(point: BranchPoint) -> ConformalFilm:
 
 def stiffness(point: BranchPoint) -> float:
     """Return E_0'', the second derivative by the writhe of the energy without twist."""
-    twist, model = smooth_family(point).twist(point.value), point.model
+    twist = cast(SmoothTwist, smooth_family(point).twist(point.value))
+    model = point.model
     slope = model.slope(twist.slope(point.x))
     whole = 1 / float(slope @ np.linalg.solve(model.hessian, slope))
     return whole - 4 * math.pi**2 * twist.gamma

@@ -105,7 +105,10 @@ class Frames:
         _, slopes = self._values
         sizes = (slopes**2).sum(axis=0)
         share = slopes.T @ (mean * speed.value - twisted.value)
-        return np.divide(share, sizes, out=np.zeros_like(share), where=sizes > 0)
+        even: FloatArray = np.divide(
+            share, sizes, out=np.zeros_like(share), where=sizes > 0
+        )
+        return even
 
     def transfer(self, other: Frames, chi: FloatArray) -> FloatArray:
         """Return the coefficients here of another frame's, theta kept."""
@@ -121,9 +124,11 @@ class Frames:
         z = np.array([0.0, 0.0, 1.0])
         across = np.cross(t, z)
         swung = (np.cross(axis, t) * across).sum(axis=1) / (across**2).sum(axis=1)
-        return t @ axis + t[:, 2] * swung
+        changed: FloatArray = t @ axis + t[:, 2] * swung
+        return changed
 
     def project(self, angles: FloatArray) -> FloatArray:
         """Return the coefficients (m,) of angles (n,) at the grid, least squares."""
         values, _ = self._values
-        return values.T @ angles / (values**2).sum(axis=0)
+        found: FloatArray = values.T @ angles / (values**2).sum(axis=0)
+        return found

@@ -99,4 +99,5 @@ class SmoothRod(Term):
 
     def _slope(self, jet: Jet) -> FloatArray:
         slope = np.einsum("nk,nkt->t", jet.slope, self.frames.design)
-        return (self.unknowns.basis.weight * self.unknowns.scales * slope)[:, None]
+        scaled: FloatArray = self.unknowns.basis.weight * self.unknowns.scales * slope
+        return scaled[:, None]

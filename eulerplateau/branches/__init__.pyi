@@ -16,6 +16,15 @@ from .films import (
     first_equilibrium as first_equilibrium,
     where_from as where_from,
 )
+from .film_locus import Known as Known, film_at as film_at, film_locus as film_locus
+from .locus import (
+    End as End,
+    Special as Special,
+    follow_locus as follow_locus,
+    locus_start as locus_start,
+    special_at as special_at,
+)
+from .locus_point import LocusPoint as LocusPoint
 from .point import (
     BranchPoint as BranchPoint,
     StepControl as StepControl,

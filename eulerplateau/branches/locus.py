@@ -18,15 +18,19 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.optimize import brentq
 
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.family import Family
 from eulerplateau.branches.locus_point import Course, LocusPoint, Motion, correct, trial
-from eulerplateau.branches.point import StepControl
+from eulerplateau.branches.point import BranchPoint, Direction, StepControl
 from eulerplateau.branches.special import FOLD, NO_PART, SpecialPoint, part_along
+from eulerplateau.branches.symmetry import mode_symmetry
 from eulerplateau.errors import SpecError
-from eulerplateau.solvers import RESIDUAL_TOLERANCE
+from eulerplateau.solvers import RESIDUAL_TOLERANCE, tangent_model
 
 _EASY = 5  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
 _PRECISION = 1e-12  # arclength to which special points are located
+_ASIDE = 1e-9  # part of the way between two points that is next to nothing
 _FIRST_LEAST = 4  # points before which a curve does not come back to its start
 
 
@@ -50,6 +54,27 @@ class End(str, Enum):
     UNBALANCED = "symmetry is lost"
     CLOSED = "comes back to its start"
     ENOUGH = "enough points"
+
+
+def special_at(family: Family, x: FloatArray, value: float, kind: str) -> SpecialPoint:
+    """Return a special point of a kind, as branches have them, from its loop (n, d)."""
+    energy = family.energy(value)
+    model = tangent_model(energy, x)
+    values, vectors = model.eigen
+    index = int(np.abs(values).argmin())
+    mode = model.displacement(vectors[:, index])
+    level = Direction(np.zeros_like(x), 1.0)
+    loop, moved = family.positions(x), family.positions(mode)
+    return SpecialPoint(
+        kind=kind,
+        point=BranchPoint(family, model, value, level, 0.0, 0),
+        mode=mode,
+        eigenvalue=float(values[index]),
+        error=0.0,
+        n_unstable=index,
+        multiplicity=1,
+        symmetry=mode_symmetry(loop, moved, mirrors=not energy.is_handed),
+    )
 
 
 def locus_start(
@@ -100,7 +125,7 @@ def locus_start(
         found = correct(course, point.family, place, normal, modes, there.steepness)
     if found is None or found.model.residual > RESIDUAL_TOLERANCE:
         raise SpecError("locus.point", f"{special!r}: no such point found again")
-    return replace(found, special=Special.START.value)
+    return replace(found, special=(Special.CUSP if leaves else Special.START).value)
 
 
 def _broken(special: SpecialPoint, second: str) -> str:
@@ -109,23 +134,27 @@ def _broken(special: SpecialPoint, second: str) -> str:
     return f"{second} breaks what the bifurcation needs ({symmetry})"
 
 
-def locus(start: LocusPoint) -> Iterator[LocusPoint]:
+def follow_locus(
+    start: LocusPoint, stop: Callable[[LocusPoint], bool] = lambda point: False
+) -> Iterator[LocusPoint]:
     """Yield the points of a curve from a start both ways, special ones among them.
 
     The last one each way says why the curve ends there. Arclength counts from the start,
-    negative the second way.
+    negative the second way. Where `stop` is true strands meet, and the curve ends.
     """
     yield start
     for way, first in ((1, start), (-1, start.reversed())):
         end = ""
-        for point in _arm(first):
+        for point in _arm(first, stop):
             yield replace(point, arclength=way * point.arclength)
             end = point.end
         if end == End.CLOSED.value:
             return
 
 
-def _arm(start: LocusPoint) -> Iterator[LocusPoint]:
+def _arm(
+    start: LocusPoint, stop: Callable[[LocusPoint], bool]
+) -> Iterator[LocusPoint]:
     """Yield the points after a start, in the direction it heads."""
     control = start.course.controls[0]
     before, step = start, control.first_step
@@ -138,7 +167,7 @@ def _arm(start: LocusPoint) -> Iterator[LocusPoint]:
             yield replace(before, special="", end=End.LOST.value)
             return
         yield from _special_points(before, after)
-        end = _end(start, before, after, number)
+        end = End.STRANDS.value if stop(after) else _end(start, before, after, number)
         yield replace(after, end=end)
         if end:
             return
@@ -195,13 +224,15 @@ def _passed(start: LocusPoint, before: LocusPoint, after: LocusPoint) -> bool:
 def _special_points(before: LocusPoint, after: LocusPoint) -> Iterator[LocusPoint]:
     """Yield what is special between two neighbouring points, in order of arclength."""
     found = []
-    if before.coefficient * after.coefficient < 0:
+    # Where a bifurcation leaves folds their curve starts from its cusp.
+    known = before.special == Special.CUSP.value
+    if not known and before.coefficient * after.coefficient < 0:
         point = _located(before, after, lambda point: point.coefficient)
         if point is not None:
             found.append((point, _nature(point)))
     turns = before.direction.rates[1] * after.direction.rates[1] < 0
     # At a cusp both parameters turn.
-    if turns and not any(kind is Special.CUSP for _, kind in found):
+    if turns and not known and not any(kind is Special.CUSP for _, kind in found):
         point = _located(before, after, lambda point: float(point.direction.rates[1]))
         if point is not None:
             found.append((point, Special.TURN))
@@ -239,8 +270,12 @@ def _located(
     def value(part: float) -> float:
         if part not in known:
             near = min(known, key=lambda other: abs(other - part))
-            found = _from(known[near], before.place + way * part, before)
-            if found is None:
+            # Where a second mode is lost the equations are singular: next to it they are not.
+            for aside in (part, part + _ASIDE):
+                found = _from(known[near], before.place + way * aside, before)
+                if found is not None:
+                    break
+            else:
                 raise ArithmeticError
             known[part] = found
         return test(known[part])

@@ -8,6 +8,7 @@ from .exploration import (
 )
 from .family import Family as Family
 from .film_family import FilmFamily as FilmFamily, equilibrium as equilibrium
+from .film_locus import Known as Known, film_at as film_at, film_locus as film_locus
 from .films import (
     FilmPoint as FilmPoint,
     equilibrium_near as equilibrium_near,
@@ -16,7 +17,6 @@ from .films import (
     first_equilibrium as first_equilibrium,
     where_from as where_from,
 )
-from .film_locus import Known as Known, film_at as film_at, film_locus as film_locus
 from .locus import (
     End as End,
     Special as Special,

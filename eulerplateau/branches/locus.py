@@ -12,7 +12,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
-from enum import Enum
+from enum import StrEnum
+from functools import partial
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -34,7 +35,7 @@ _ASIDE = 1e-9  # part of the way between two points that is next to nothing
 _FIRST_LEAST = 4  # points before which a curve does not come back to its start
 
 
-class Special(str, Enum):
+class Special(StrEnum):
     """What is special about a point of a curve of special points."""
 
     START = "start"
@@ -45,7 +46,7 @@ class Special(str, Enum):
     TURN = "turn"
 
 
-class End(str, Enum):
+class End(StrEnum):
     """Why a curve ends."""
 
     WINDOW = "leaves the window"
@@ -125,7 +126,7 @@ def locus_start(
         found = correct(course, point.family, place, normal, modes, there.steepness)
     if found is None or found.model.residual > RESIDUAL_TOLERANCE:
         raise SpecError("locus.point", f"{special!r}: no such point found again")
-    return replace(found, special=(Special.CUSP if leaves else Special.START).value)
+    return replace(found, special=(Special.CUSP if leaves else Special.START))
 
 
 def _broken(special: SpecialPoint, second: str) -> str:
@@ -148,13 +149,11 @@ def follow_locus(
         for point in _arm(first, stop):
             yield replace(point, arclength=way * point.arclength)
             end = point.end
-        if end == End.CLOSED.value:
+        if end == End.CLOSED:
             return
 
 
-def _arm(
-    start: LocusPoint, stop: Callable[[LocusPoint], bool]
-) -> Iterator[LocusPoint]:
+def _arm(start: LocusPoint, stop: Callable[[LocusPoint], bool]) -> Iterator[LocusPoint]:
     """Yield the points after a start, in the direction it heads."""
     control = start.course.controls[0]
     before, step = start, control.first_step
@@ -164,10 +163,10 @@ def _arm(
             after = _advance(before, step)
             step = step if after is not None else 0.5 * step
         if after is None:
-            yield replace(before, special="", end=End.LOST.value)
+            yield replace(before, special="", end=End.LOST)
             return
         yield from _special_points(before, after)
-        end = End.STRANDS.value if stop(after) else _end(start, before, after, number)
+        end = End.STRANDS if stop(after) else _end(start, before, after, number)
         yield replace(after, end=end)
         if end:
             return
@@ -189,9 +188,7 @@ def _advance(before: LocusPoint, step: float) -> LocusPoint | None:
     return replace(after, arclength=before.arclength + step)
 
 
-def _from(
-    near: LocusPoint, guess: Motion, heading: LocusPoint
-) -> LocusPoint | None:
+def _from(near: LocusPoint, guess: Motion, heading: LocusPoint) -> LocusPoint | None:
     """Return the point in the hyperplane through a guess, by what is known near by."""
     modes = [near.model.displacement(mode) for mode in near.modes.T]
     return correct(
@@ -203,12 +200,12 @@ def _end(start: LocusPoint, before: LocusPoint, after: LocusPoint, number: int) 
     """Return why a curve ends at a point, or nothing."""
     course = after.course
     if not course.inside(after.values):
-        return End.WINDOW.value
+        return End.WINDOW
     if after.model.residual > RESIDUAL_TOLERANCE:
-        return End.UNBALANCED.value
+        return End.UNBALANCED
     if number >= _FIRST_LEAST and _passed(start, before, after):
-        return End.CLOSED.value
-    return End.ENOUGH.value if number + 1 == course.controls[0].max_points else ""
+        return End.CLOSED
+    return End.ENOUGH if number + 1 == course.controls[0].max_points else ""
 
 
 def _passed(start: LocusPoint, before: LocusPoint, after: LocusPoint) -> bool:
@@ -225,7 +222,7 @@ def _special_points(before: LocusPoint, after: LocusPoint) -> Iterator[LocusPoin
     """Yield what is special between two neighbouring points, in order of arclength."""
     found = []
     # Where a bifurcation leaves folds their curve starts from its cusp.
-    known = before.special == Special.CUSP.value
+    known = before.special == Special.CUSP
     if not known and before.coefficient * after.coefficient < 0:
         point = _located(before, after, lambda point: point.coefficient)
         if point is not None:
@@ -238,11 +235,16 @@ def _special_points(before: LocusPoint, after: LocusPoint) -> Iterator[LocusPoin
             found.append((point, Special.TURN))
     ends = before.n_unstable, after.n_unstable
     for number in range(min(ends), max(ends)):
-        point = _located(before, after, lambda point, n=number: float(point.others[n]))
+        point = _located(before, after, partial(_other, number))
         if point is not None:
             found.append((point, Special.DOUBLE))
     for point, kind in sorted(found, key=lambda pair: pair[0].arclength):
-        yield replace(point, special=kind.value)
+        yield replace(point, special=kind)
+
+
+def _other(number: int, point: LocusPoint) -> float:
+    """Return an eigenvalue of a mode that is not followed."""
+    return float(point.others[number])
 
 
 def _nature(point: LocusPoint) -> Special:
@@ -270,7 +272,7 @@ def _located(
     def value(part: float) -> float:
         if part not in known:
             near = min(known, key=lambda other: abs(other - part))
-            # Where a second mode is lost the equations are singular: next to it they are not.
+            # Where a second mode is lost the equations are singular, not next to it.
             for aside in (part, part + _ASIDE):
                 found = _from(known[near], before.place + way * aside, before)
                 if found is not None:

@@ -32,6 +32,8 @@ from eulerplateau.solvers import TangentModel, tangent_model
 _CORRECTIONS = 20
 # Arclength of a correction below which it is none, and below which it may be rounding.
 _SETTLED, _ROUNDING = 1e-12, 1e-7
+# Distance from a value that does not exist, in the parameter's unit, at which curves end.
+_NEXT_TO = 1e-6
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,8 @@ class Course:
     def inside(self, values: FloatArray) -> bool:
         """Return whether both parameters (2,) are in their windows."""
         low, high = np.transpose([control.window for control in self.controls])
+        least = np.array([control.least for control in self.controls])
+        low = np.maximum(low, least + _NEXT_TO * self.units)
         return bool(np.all((low <= values) & (values <= high)))
 
     def dot(self, model: TangentModel, one: Motion, other: Motion) -> float:
@@ -182,7 +186,7 @@ class Trial:
 
     @property
     def slopes(self) -> FloatArray:
-        """dg by both parameters in their units, as columns (m, 2)."""
+        """The derivative of g by both parameters in their units, as columns (m, 2)."""
         model, names = self.model, (self.family.parameter, self.course.second)
         rates = [model.slope(self.energy.rate(name, model.x)) for name in names]
         return np.column_stack(rates) * self.course.units
@@ -208,7 +212,8 @@ class Trial:
         matrix, m = self.system(steepness, normal), len(self.model.gradient)
         left = np.zeros(len(matrix))
         left[: m + 2] = *self.model.gradient, self.curved, off
-        return self.course.motion(self.model, -np.linalg.solve(matrix, left)[: m + 2])
+        step = -np.linalg.solve(matrix, left).astype(np.float64)
+        return self.course.motion(self.model, step[: m + 2])
 
     def completed(self, normal: Motion, corrections: int) -> LocusPoint:
         """Return the point that this is, heading as `normal`; raises LinAlgError."""
@@ -291,6 +296,4 @@ def trial(
     border = polar(np.column_stack([model.coefficients(mode) for mode in modes]))[0]
     found, left = bordered(model.hessian, border, np.zeros_like(border), np.eye(len(modes)))
     curved = -float(np.trace(left)) / len(modes)
-    return Trial(
-        course, there, place.rates, energy, model, border, polar(found)[0], curved
-    )
+    return Trial(course, there, place.rates, energy, model, border, polar(found)[0], curved)

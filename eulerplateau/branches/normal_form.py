@@ -114,7 +114,9 @@ class Neighbourhood:
         return np.array([float(mode @ changed) / step**2])
 
 
-def _extrapolated(difference: Callable[[int, float], FloatArray], number: int) -> FloatArray:
+def _extrapolated(
+    difference: Callable[[int, float], FloatArray], number: int
+) -> FloatArray:
     """Return a difference along a mode, good to the step's fourth order."""
     fine, coarse = difference(number, _STEP), difference(number, 2 * _STEP)
     better: FloatArray = (4 * fine - coarse) / 3

@@ -231,9 +231,7 @@ def _step_along(
     )
 
 
-def part_along(
-    point: BranchPoint, mode: FloatArray, parameter: str, unit: float
-) -> float:
+def part_along(point: BranchPoint, mode: FloatArray, parameter: str, unit: float) -> float:
     """Return the part that the pull of a parameter has along a null vector (m,), 0 to 1.
 
     Parameters

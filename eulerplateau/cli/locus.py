@@ -29,7 +29,9 @@ _WITH = {"load": "load", "loop.link": "link", "loop.twist_ratio": "twist_ratio"}
     required=True,
     help="The second parameter.",
 )
-@click.option("--from", "low", type=float, help="Where the second parameter's window begins.")
+@click.option(
+    "--from", "low", type=float, help="Where the second parameter's window begins."
+)
 @click.option("--to", "high", type=float, help="Where it ends.")
 @click.option(
     "--branches",

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from eulerplateau.pictures.figure import BLACK, BLUE, VERMILION, drawn, frame, new_figure, save
+from eulerplateau.pictures.figure import (
+    BLACK,
+    BLUE,
+    VERMILION,
+    drawn,
+    frame,
+    new_figure,
+    save,
+)
 from eulerplateau.runs import Locus
 
 LOCUS = "locus.png"

@@ -112,7 +112,9 @@ def _start(spec: RunSpec, asked: Asked) -> tuple[Problem, Known, float]:
     row = next(row for row in run.rows if row.special == asked.number)
     shape = read_shape(run.shape_path(row))
     if shape.rest_mesh != disk.digest:
-        raise OutputError(asked.run, "is the run of another mesh: explore its branches anew")
+        raise OutputError(
+            asked.run, "is the run of another mesh: explore its branches anew"
+        )
     held = spec.film.load or 0.0
     if run.load.column != spec.column(spec.explored):
         raise OutputError(asked.run, f"varies {run.load.text}: explore its branches anew")

@@ -1,4 +1,4 @@
-"""Curves of special points in two parameters, of energies whose curves are known exactly."""
+"""Curves of special points in two parameters, of energies with exact ones."""
 
 from __future__ import annotations
 
@@ -133,13 +133,13 @@ def specials(points: list[LocusPoint]) -> list[tuple[str, FloatArray]]:
 
 def test_folds_go_through_their_cusp() -> None:
     points = curve(cusp, 0.5, 0.75, -0.25)
-    assert {point.end for point in points} == {"", End.WINDOW.value}
+    assert {point.end for point in points} == {"", End.WINDOW}
     p, r = np.transpose([point.values for point in points])
     np.testing.assert_allclose((p / 3) ** 3, (r / 2) ** 2, atol=1e-11)
     assert r.min() < -0.9
     assert r.max() > 0.9
     ((kind, place),) = specials(points)
-    assert kind == Special.CUSP.value
+    assert kind == Special.CUSP
     np.testing.assert_allclose(place, 0, atol=1e-9)
     for point in points:  # a_2 = 3 x, up to the mode's sign
         x = point.model.x[0, 0]
@@ -149,21 +149,23 @@ def test_folds_go_through_their_cusp() -> None:
 def test_a_bifurcation_that_the_second_parameter_breaks_leaves_its_folds() -> None:
     points = curve(cusp, 0.0, 0.0, 0.0, BIFURCATION)
     assert not any(point.course.symmetric for point in points)
-    assert points[0].special == Special.CUSP.value
-    assert specials(points) == [(Special.CUSP.value, points[0].values)]
+    assert points[0].special == Special.CUSP
+    assert specials(points) == [(Special.CUSP, points[0].values)]
     p, r = np.transpose([point.values for point in points])
     np.testing.assert_allclose((p / 3) ** 3, (r / 2) ** 2, atol=1e-11)
     assert np.ptp(r) > 2
 
 
-def test_a_pitchfork_stays_and_changes_its_nature_where_its_cubic_coefficient_says() -> None:
+def test_a_pitchfork_stays_and_changes_its_nature_where_its_cubic_coefficient_says() -> (
+    None
+):
     points = curve(pitchfork, 0.0, 0.0, 0.2, BIFURCATION)
     assert all(point.course.symmetric for point in points)
     for point in points:
         assert point.values[0] == pytest.approx(0, abs=1e-12)
         assert point.coefficient == pytest.approx(1 - 2 * point.values[1] ** 2, abs=1e-5)
     found = specials(points)
-    assert {kind for kind, _ in found} == {Special.NATURE.value}
+    assert {kind for kind, _ in found} == {Special.NATURE}
     places = sorted(place[1] for _, place in found)
     assert places == pytest.approx([-np.sqrt(0.5), np.sqrt(0.5)], abs=1e-6)
 
@@ -173,17 +175,17 @@ def test_where_a_curve_turns_in_the_second_parameter() -> None:
     p, r = np.transpose([point.values for point in points])
     np.testing.assert_allclose(r, p**2, atol=1e-11)
     ((kind, place),) = specials(points)
-    assert kind == Special.TURN.value
+    assert kind == Special.TURN
     np.testing.assert_allclose(place, 0, atol=1e-9)
 
 
 def test_a_closed_curve_ends_at_its_start_and_says_where_another_mode_is_lost() -> None:
     points = curve(circle, 0.0, 1.0, 0.0)
-    assert points[-1].end == End.CLOSED.value
+    assert points[-1].end == End.CLOSED
     assert min(point.arclength for point in points) == 0
     found = specials(points)
-    double = [place for kind, place in found if kind == Special.DOUBLE.value]
-    turns = [place for kind, place in found if kind == Special.TURN.value]
+    double = [place for kind, place in found if kind == Special.DOUBLE]
+    turns = [place for kind, place in found if kind == Special.TURN]
     np.testing.assert_allclose([place[1] for place in double], 0.5, atol=1e-9)
     assert sorted(place[1] for place in turns) == pytest.approx([-1, 1], abs=1e-9)
     assert len(double) == 2

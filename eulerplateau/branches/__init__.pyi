@@ -8,7 +8,7 @@ from .exploration import (
 )
 from .family import Family as Family
 from .film_family import FilmFamily as FilmFamily, equilibrium as equilibrium
-from .film_locus import Known as Known, film_at as film_at, film_locus as film_locus
+from .film_locus import Known as Known, film_at as film_at, locus_of_film as locus_of_film
 from .films import (
     FilmPoint as FilmPoint,
     equilibrium_near as equilibrium_near,

@@ -29,7 +29,7 @@ class Known:
     multiplicity: int = 1
 
 
-def film_locus(
+def locus_of_film(
     problem: Problem,
     known: Known,
     load: float,

@@ -106,7 +106,9 @@ def locus_start(
     symmetric = special.kind != FOLD
     if symmetric:
         unit = controls[1].unit
-        parts = [part_along(point, mode, second, unit) for mode in lost.T]
+        parts = [
+            part_along(point.energy, point.model, mode, second, unit) for mode in lost.T
+        ]
         symmetric = max(parts) < NO_PART
         if not symmetric and k > 1:
             raise SpecError("locus.with", f"{_broken(special, second)}: {k} modes at once")
@@ -228,8 +230,12 @@ def _special_points(before: LocusPoint, after: LocusPoint) -> Iterator[LocusPoin
         if point is not None:
             found.append((point, _nature(point)))
     turns = before.direction.rates[1] * after.direction.rates[1] < 0
-    # At a cusp both parameters turn.
-    if turns and not known and not any(kind is Special.CUSP for _, kind in found):
+    # At a cusp both parameters turn, as where folds are mirror images beyond.
+    if (
+        turns
+        and not known
+        and not any(kind in (Special.CUSP, Special.MEETING) for _, kind in found)
+    ):
         point = _located(before, after, lambda point: float(point.direction.rates[1]))
         if point is not None:
             found.append((point, Special.TURN))
@@ -251,13 +257,12 @@ def _nature(point: LocusPoint) -> Special:
     """Return what it means that the coefficient vanishes."""
     if point.course.symmetric:
         return Special.NATURE
-    model, family = point.model, point.family
-    mode = point.modes[:, 0]
-    slopes = [
-        model.slope(point.energy.rate(name, model.x))
-        for name in (family.parameter, point.course.second)
+    course, mode = point.course, point.modes[:, 0]
+    names = point.family.parameter, course.second
+    parts = [
+        part_along(point.energy, point.model, mode, name, unit)
+        for name, unit in zip(names, course.units, strict=True)
     ]
-    parts = [abs(slope @ mode) / np.linalg.norm(slope) for slope in slopes]
     return Special.MEETING if max(parts) < NO_PART else Special.CUSP
 
 

@@ -28,6 +28,8 @@ from eulerplateau.branches.point import (
     parameter_slope,
 )
 from eulerplateau.branches.symmetry import ModeSymmetry, mode_symmetry
+from eulerplateau.loop import LoopEnergy
+from eulerplateau.solvers import TangentModel
 
 FOLD, BIFURCATION = "fold", "bifurcation"
 
@@ -231,19 +233,21 @@ def _step_along(
     )
 
 
-def part_along(point: BranchPoint, mode: FloatArray, parameter: str, unit: float) -> float:
+def part_along(
+    energy: LoopEnergy, model: TangentModel, mode: FloatArray, parameter: str, unit: float
+) -> float:
     """Return the part that the pull of a parameter has along a null vector (m,), 0 to 1.
 
     Parameters
     ----------
+    model : of the energy, at an equilibrium
     parameter : that of the branch, or another one of the energy's
     unit : float, a change of it that counts, as a StepControl's
     """
-    energy, model = point.energy, point.model
-    pull = energy.rate(parameter, point.x)
+    pull = energy.rate(parameter, model.x)
     slope = model.slope(pull)
-    held = energy.constraint.force(point.x, model.tensions)
-    forces = [force / unit for force in (*energy.forces(point.x), held)]
+    held = energy.constraint.force(model.x, model.tensions)
+    forces = [force / unit for force in (*energy.forces(model.x), held)]
     sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pull, *forces)]
     size = max(float(np.linalg.norm(slope)), _IDLE * max(sizes))
     return abs(float(slope @ mode)) / size
@@ -255,7 +259,9 @@ def _describe(
     values, vectors = point.model.eigen
     mode = point.model.displacement(vectors[:, index])
     parameter, unit = point.family.parameter, interval.control.unit
-    folds = part_along(point, vectors[:, index], parameter, unit) > NO_PART
+    folds = (
+        part_along(point.energy, point.model, vectors[:, index], parameter, unit) > NO_PART
+    )
     if not folds:
         point = replace(point, direction=_through(point, index, interval.control))
     return SpecialPoint(

@@ -9,7 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from eulerplateau.branches import BIFURCATION, FOLD, Known, LocusPoint, film_at, film_locus
+from eulerplateau.branches import (
+    BIFURCATION,
+    FOLD,
+    Known,
+    LocusPoint,
+    film_at,
+    locus_of_film,
+)
 from eulerplateau.errors import ConflictError, OutputError, SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.interruption import heed, working_on
@@ -82,7 +89,7 @@ def run_locus(
     varied = spec.explored, asked.second
     names = _name(spec, varied[0]), _name(spec, varied[1])
     windows = spec.window(), _window(problem.value(asked.second, load), asked)
-    points = film_locus(problem, known, load, varied, windows)
+    points = locus_of_film(problem, known, load, varied, windows)
     path.mkdir(parents=True, exist_ok=True)
     rows: list[dict[str, Any]] = []
     working_on(lambda: f"{path}: {len(rows)} points")

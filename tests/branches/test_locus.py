@@ -52,6 +52,18 @@ def circle(x: float, y: float, p: float, r: float) -> tuple[object, ...]:
     return slope, curved, (2 * p, 0), (2 * r, y)
 
 
+def sextic(x: float, y: float, p: float, r: float) -> tuple[object, ...]:
+    """-p x^2/2 + r x^4/4 + x^6/6 + y^2/2: folds at p = -x^4, r = -2 x^2."""
+    slope, curved = -p * x + r * x**3 + x**5, -p + 3 * r * x**2 + 5 * x**4
+    return (slope, y), ((curved, 0), (0, 1)), (-x, 0), (x**3, 0)
+
+
+def flawed(x: float, y: float, p: float, r: float) -> tuple[object, ...]:
+    """x^4/4 - p x^2/2 - r^3 x + y^2/2: symmetric only as long as r = 0."""
+    slope, curved = x**3 - p * x - r**3, 3 * x**2 - p
+    return (slope, y), ((curved, 0), (0, 1)), (-x, 0), (-3 * r**2, 0)
+
+
 @dataclass(frozen=True)
 class Exact(Term):
     jet: Jet
@@ -198,3 +210,23 @@ def test_two_modes_at_once_are_no_fold() -> None:
     special = special_at(ExactFamily(circle, 0.5), np.zeros((2, 1)), np.sqrt(0.75), FOLD)
     with pytest.raises(SpecError, match="at once"):
         locus_start(replace(special, multiplicity=2), "r", 0.5, (control, control))
+
+
+def test_where_folds_end_on_the_bifurcation_they_leave_their_mirror_images_begin() -> None:
+    points = curve(sextic, 0.7, -(0.7**4), -2 * 0.7**2, reach=1.5)
+    p, r = np.transpose([point.values for point in points])
+    x = np.array([point.model.x[0, 0] for point in points])
+    assert x.min() < -0.7
+    assert x.max() > 0.7
+    np.testing.assert_allclose(p, -(x**4), atol=1e-10)
+    np.testing.assert_allclose(r, -2 * x**2, atol=1e-10)
+    ((kind, place),) = specials(points)
+    assert kind == Special.MEETING
+    np.testing.assert_allclose(place, 0, atol=1e-9)
+
+
+def test_a_bifurcation_ends_where_its_symmetry_does() -> None:
+    points = curve(flawed, 0.0, 0.0, 0.0, BIFURCATION)
+    ends = [point for point in points if point.end]
+    assert [point.end for point in ends] == 2 * [End.UNBALANCED]
+    assert all(abs(point.values[1]) < 0.2 for point in points)

@@ -31,7 +31,8 @@ from eulerplateau.solvers import RESIDUAL_TOLERANCE, tangent_model
 _EASY = 5  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
 _PRECISION = 1e-12  # arclength to which special points are located
-_ASIDE = 1e-9  # part of the way between two points that is next to nothing
+# Parts of the way between two points by which a singular one is passed.
+_ASIDE = 0.0, 1e-9, 1e-6, 1e-4, 1e-3
 _FIRST_LEAST = 4  # points before which a curve does not come back to its start
 
 
@@ -277,12 +278,11 @@ def _located(
     def value(part: float) -> float:
         if part not in known:
             near = min(known, key=lambda other: abs(other - part))
-            # Where a second mode is lost the equations are singular, not next to it.
-            for aside in (part, part + _ASIDE):
-                found = _from(known[near], before.place + way * aside, before)
-                if found is not None:
-                    break
-            else:
+            # Where another mode is lost, or folds end, the equations are singular.
+            ways = (before.place + way * (part + aside) for aside in _ASIDE)
+            tried = (_from(known[near], place, before) for place in ways)
+            found = next((point for point in tried if point is not None), None)
+            if found is None:
                 raise ArithmeticError
             known[part] = found
         return test(known[part])

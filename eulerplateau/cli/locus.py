@@ -14,7 +14,12 @@ from eulerplateau.cli.overrides import load_single, setting, single_values
 if TYPE_CHECKING:
     from eulerplateau.runs import Asked, Locus, RunSpec
 
-_WITH = {"load": "load", "loop.link": "link", "loop.twist_ratio": "twist_ratio"}
+_WITH = {
+    "load": "load",
+    "loop.link": "link",
+    "loop.twist_ratio": "twist_ratio",
+    "loop.rest_curvature": "rest_curvature",
+}
 
 
 @click.command()

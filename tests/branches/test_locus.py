@@ -53,9 +53,9 @@ def circle(x: float, y: float, p: float, r: float) -> tuple[object, ...]:
 
 
 def sextic(x: float, y: float, p: float, r: float) -> tuple[object, ...]:
-    """-p x^2/2 + r x^4/4 + x^6/6 + y^2/2: folds at p = -x^4, r = -2 x^2."""
+    """-p x^2/2 + r x^4/4 + x^6/6 + (y - p - r)^2/2: folds at p = -x^4, r = -2 x^2."""
     slope, curved = -p * x + r * x**3 + x**5, -p + 3 * r * x**2 + 5 * x**4
-    return (slope, y), ((curved, 0), (0, 1)), (-x, 0), (x**3, 0)
+    return (slope, y - p - r), ((curved, 0), (0, 1)), (-x, -1), (x**3, -1)
 
 
 def flawed(x: float, y: float, p: float, r: float) -> tuple[object, ...]:
@@ -214,15 +214,17 @@ def test_two_modes_at_once_are_no_fold() -> None:
 
 def test_where_folds_end_on_the_bifurcation_they_leave_their_mirror_images_begin() -> None:
     points = curve(sextic, 0.7, -(0.7**4), -2 * 0.7**2, reach=1.5)
-    p, r = np.transpose([point.values for point in points])
-    x = np.array([point.model.x[0, 0] for point in points])
+    ordinary = [point for point in points if not point.special]
+    p, r = np.transpose([point.values for point in ordinary])
+    x = np.array([point.model.x[0, 0] for point in ordinary])
     assert x.min() < -0.7
     assert x.max() > 0.7
-    np.testing.assert_allclose(p, -(x**4), atol=1e-10)
-    np.testing.assert_allclose(r, -2 * x**2, atol=1e-10)
+    np.testing.assert_allclose(p, -(x**4), atol=1e-9)
+    np.testing.assert_allclose(r, -2 * x**2, atol=1e-7)
     ((kind, place),) = specials(points)
     assert kind == Special.MEETING
-    np.testing.assert_allclose(place, 0, atol=1e-9)
+    # Their equations are singular there: next to it r is known to rounding over x^2.
+    np.testing.assert_allclose(place, 0, atol=2e-6)
 
 
 def test_a_bifurcation_ends_where_its_symmetry_does() -> None:

@@ -6,13 +6,15 @@
     continuation.py one branch, point by point (point.py); the step's length
     between.py      where between two points something vanishes
     special.py      what a fold or a bifurcation is, and the branches that leave it
+    locus.py        folds and bifurcations in two parameters, point by point
+                    (locus_point.py, normal_form.py); film_locus.py: those of a film
     family.py       what is varied: energies of a loop that differ in one parameter
     catalogue.py    the distinct equilibria at a load: from random starts, and by deflation
                     (deflation.py), told apart by likeness.py
     symmetry.py     which symmetries a mode breaks; scaling.py: exponents at an onset
 
-Only films.py, film_family.py and catalogue.py know films: any `Family` of energies of a
-loop can be followed.
+Only films.py, film_family.py, film_locus.py and catalogue.py know films: any `Family` of
+energies of a loop can be followed.
 """
 
 import lazy_loader

@@ -8,6 +8,7 @@ from .exploration import (
 )
 from .family import Family as Family
 from .film_family import FilmFamily as FilmFamily, equilibrium as equilibrium
+from .film_locus import Known as Known, film_at as film_at, locus_of_film as locus_of_film
 from .films import (
     FilmPoint as FilmPoint,
     equilibrium_near as equilibrium_near,
@@ -16,6 +17,14 @@ from .films import (
     first_equilibrium as first_equilibrium,
     where_from as where_from,
 )
+from .locus import (
+    End as End,
+    Special as Special,
+    follow_locus as follow_locus,
+    locus_start as locus_start,
+    special_at as special_at,
+)
+from .locus_point import LocusPoint as LocusPoint
 from .point import (
     BranchPoint as BranchPoint,
     StepControl as StepControl,

@@ -28,12 +28,14 @@ from eulerplateau.branches.point import (
     parameter_slope,
 )
 from eulerplateau.branches.symmetry import ModeSymmetry, mode_symmetry
+from eulerplateau.loop import LoopEnergy
+from eulerplateau.solvers import TangentModel
 
 FOLD, BIFURCATION = "fold", "bifurcation"
 
 # |b.phi| / |b| below which b has no part along phi. Symmetric points reach 1e-8; folds on
 # these films have 0.1 and more.
-_NO_PART = 1e-3
+NO_PART = 1e-3
 # Arclength at which a branch is left for another: far enough for two distinct solutions
 # to be told apart, close enough to be certain of landing on the wanted one.
 _SWITCHING_STEP = 2e-3
@@ -231,12 +233,21 @@ def _step_along(
     )
 
 
-def _part_along(point: BranchPoint, mode: FloatArray, control: StepControl) -> float:
-    energy, model = point.energy, point.model
-    slope = parameter_slope(point.family, energy, model)
-    pull = energy.rate(point.family.parameter, point.x)
-    held = energy.constraint.force(point.x, model.tensions)
-    forces = [force / control.unit for force in (*energy.forces(point.x), held)]
+def part_along(
+    energy: LoopEnergy, model: TangentModel, mode: FloatArray, parameter: str, unit: float
+) -> float:
+    """Return the part that the pull of a parameter has along a null vector (m,), 0 to 1.
+
+    Parameters
+    ----------
+    model : of the energy, at an equilibrium
+    parameter : that of the branch, or another one of the energy's
+    unit : float, a change of it that counts, as a StepControl's
+    """
+    pull = energy.rate(parameter, model.x)
+    slope = model.slope(pull)
+    held = energy.constraint.force(model.x, model.tensions)
+    forces = [force / unit for force in (*energy.forces(model.x), held)]
     sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pull, *forces)]
     size = max(float(np.linalg.norm(slope)), _IDLE * max(sizes))
     return abs(float(slope @ mode)) / size
@@ -247,7 +258,10 @@ def _describe(
 ) -> SpecialPoint:
     values, vectors = point.model.eigen
     mode = point.model.displacement(vectors[:, index])
-    folds = _part_along(point, vectors[:, index], interval.control) > _NO_PART
+    parameter, unit = point.family.parameter, interval.control.unit
+    folds = (
+        part_along(point.energy, point.model, vectors[:, index], parameter, unit) > NO_PART
+    )
     if not folds:
         point = replace(point, direction=_through(point, index, interval.control))
     return SpecialPoint(

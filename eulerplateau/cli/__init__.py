@@ -19,6 +19,7 @@ from eulerplateau.cli.ensemble import ensemble
 from eulerplateau.cli.examples import examples
 from eulerplateau.cli.film import film
 from eulerplateau.cli.gallery import gallery
+from eulerplateau.cli.locus import locus
 from eulerplateau.cli.mesh import mesh
 from eulerplateau.cli.planar import planar
 from eulerplateau.cli.plot import plot
@@ -53,6 +54,7 @@ commands.add_command(ensemble)
 commands.add_command(examples)
 commands.add_command(film)
 commands.add_command(gallery)
+commands.add_command(locus)
 commands.add_command(mesh)
 commands.add_command(planar)
 commands.add_command(plot)

@@ -145,7 +145,16 @@ def test_specifications_of_the_tutorial_are_valid(clone: Path) -> None:
 
 def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
     lines = command_lines(TUTORIAL, "eulerplateau")
-    elsewhere = {"planar", "film", "cell", "catalogue", "ensemble", "collect", "doctor"}
+    elsewhere = {
+        "planar",
+        "film",
+        "cell",
+        "locus",
+        "catalogue",
+        "ensemble",
+        "collect",
+        "doctor",
+    }
     assert {line[1] for line in lines} == set(commands.commands) - elsewhere
     for line in lines:
         run(*line[1:])

@@ -1,0 +1,133 @@
+"""How an energy goes on along modes that are lost: its third and fourth derivatives.
+
+Displacements are projected onto the constraint without a motion along the tangent space,
+so that differences of the Hessian between loops x(+-z phi) are
+derivatives of the energy by the tangent coordinates (exact for the third, and for the
+fourth along phi, where g = 0 and H phi = 0). With the other coordinates eliminated the
+slope along phi is
+
+    V'(z) = a_2 z^2 + a_3 z^3 + ...,     a_2 = T.phi / 2,
+    a_3 = D4[phi, phi, phi, phi] / 6 - T.w / 2,     T = D3[phi, phi, .],  H w = T, w.phi = 0
+
+(Golubitsky and Schaeffer 1985; Govaerts 2000). Differences are extrapolated
+from two steps: most of the fourth is taken back by what yields.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.loop import LoopEnergy
+from eulerplateau.solvers import TangentModel, tangent_model
+
+# Displacement, r.m.s. in L, between which differences are taken.
+_STEP = 5e-4
+# Projections that leave next to nothing of what they move along the tangent space.
+_PROJECTIONS = 3
+
+
+@dataclass(frozen=True)
+class Neighbourhood:
+    """Loops along modes that are lost, next to an equilibrium.
+
+    Attributes
+    ----------
+    model : at the equilibrium
+    modes : (m, k) float, orthonormal null vectors of its Hessian
+    """
+
+    energy: LoopEnergy
+    model: TangentModel
+    modes: FloatArray
+    _known: dict[tuple[int, float], TangentModel] = field(default_factory=dict, repr=False)
+
+    def third(self) -> FloatArray:
+        """Return D3[phi, phi, .] of each mode, as columns (m, k)."""
+        numbers = range(self.modes.shape[1])
+        return np.column_stack([_extrapolated(self._third, number) for number in numbers])
+
+    def cubic(self, third: FloatArray) -> float:
+        """Return a_3 of the first mode: positive where a pitchfork is supercritical.
+
+        third : (m,) float, D3[phi, phi, .]
+        """
+        force, still = third[:, None], np.zeros((self.modes.shape[1], 1))
+        yielding, _ = bordered(self.model.hessian, self.modes, force, still)
+        fourth = _extrapolated(self._fourth, 0)
+        return float(fourth[0]) / 6 - 0.5 * float(third @ yielding[:, 0])
+
+    def mixed(self, parameter: str) -> float:
+        """Return phi^T (dH / dparameter) phi, the mean over the modes."""
+        changes = []
+        for number, mode in enumerate(self.modes.T):
+            ahead, behind = (self._work(number, s, parameter) for s in (_STEP, -_STEP))
+            changes.append(float((ahead - behind) @ mode) / (2 * _STEP))
+        return float(np.mean(changes))
+
+    def _third(self, number: int, step: float) -> FloatArray:
+        """Return D3 (m,) along a mode, good to the step's second order."""
+        return (self._pull(number, step) - self._pull(number, -step)) / (2 * step)
+
+    def _beside(self, number: int, step: float) -> TangentModel:
+        """Return the model at a loop along a mode; raises LinAlgError if there is none."""
+        if (number, step) not in self._known:
+            x = self._moved(step * self.modes[:, number])
+            self._known[number, step] = tangent_model(self.energy, x)
+        return self._known[number, step]
+
+    def _moved(self, coefficients: FloatArray) -> FloatArray:
+        """Return the loop (n, d) that keeps the constraint and has these coordinates (m,).
+
+        A projection may go along the tangent space, by the square of the displacement.
+        """
+        x = self.model.x
+        for _ in range(_PROJECTIONS):
+            missing = coefficients - self.model.coefficients(x - self.model.x)
+            kept = self.energy.constraint.project(x + self.model.displacement(missing))
+            if kept is None:
+                raise LinAlgError("no loop along the mode keeps its length")
+            x = kept
+        return x
+
+    def _pull(self, number: int, step: float) -> FloatArray:
+        """Return H phi (m,) at a loop along a mode, in the coordinates here."""
+        beside = self._beside(number, step)
+        mode = beside.coefficients(self.model.displacement(self.modes[:, number]))
+        return self.model.coefficients(beside.displacement(beside.hessian @ mode))
+
+    def _work(self, number: int, step: float, parameter: str) -> FloatArray:
+        """Return dg/dparameter (m,) at a loop along a mode, in the coordinates here."""
+        beside = self._beside(number, step)
+        rate = beside.slope(self.energy.rate(parameter, beside.x))
+        return self.model.coefficients(beside.displacement(rate))
+
+    def _fourth(self, number: int, step: float) -> FloatArray:
+        """Return D4 (1,) along a mode, good to the step's second order."""
+        mode = self.modes[:, number]
+        beside = self._pull(number, step) + self._pull(number, -step)
+        changed = beside - 2 * self.model.hessian @ mode
+        return np.array([float(mode @ changed) / step**2])
+
+
+def _extrapolated(
+    difference: Callable[[int, float], FloatArray], number: int
+) -> FloatArray:
+    """Return a difference along a mode, good to the step's fourth order."""
+    fine, coarse = difference(number, _STEP), difference(number, 2 * _STEP)
+    better: FloatArray = (4 * fine - coarse) / 3
+    return better
+
+
+def bordered(
+    hessian: FloatArray, border: FloatArray, force: FloatArray, amount: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return w (m, j) and mu (k, j): H w + B mu = force, B^T w = amount, for B (m, k)."""
+    m, k = border.shape
+    matrix = np.block([[hessian, border], [border.T, np.zeros((k, k))]])
+    found = np.linalg.solve(matrix, np.vstack([force, amount]))
+    return found[:m], found[m:]

@@ -129,7 +129,10 @@ def _folds(curves: dict[float, list[Row]]) -> Iterator[tuple[str, ...]]:
     for load, rows in curves.items():
         for ratio in ISOTROPIC:
             folds = [f"{link:.3f}" for link, _ in snaps(rows, ratio)]
-            ranges = [f"{low:.3f} to {high:.3f}" for low, high in stable_links(rows, ratio)]
+            ranges = [
+                f"{round(low, 3) + 0.0:.3f} to {high:.3f}"
+                for low, high in stable_links(rows, ratio)
+            ]
             yields = f"{disk_link(load, ratio):.4f}" if load < BUCKLING else "-"
             yield f"{load:g}", f"{ratio:.3g}", yields, ", ".join(folds), ", ".join(ranges)
 

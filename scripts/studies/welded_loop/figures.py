@@ -9,15 +9,17 @@ from typing import Any
 import numpy as np
 
 from eulerplateau.branches.conformal import Start, rod_film
-from eulerplateau.exact.conformal import flat_eight
+from eulerplateau.exact.conformal import BUCKLING, flat_eight
 from eulerplateau.pictures.figure import BLACK, BLUE, GREEN, ORANGE, VERMILION, frame, save
 from scripts.studies.true_film.figures import draw_surface
-from scripts.studies.welded_loop.answers import ISOTROPIC, Load
+from scripts.studies.welded_loop.answers import ISOTROPIC, Load, disk_link
 from scripts.studies.welded_loop.curves import Row
 
 _LOAD = r"$\hat\sigma=\sigma L^3/\alpha$"
 _LINKS = (0.25, 0.5, 0.75)
 _SHOWN = 1700.0
+# Energies that are shown, above the flat film's, by load.
+_ENERGIES = {1000.0: (-2.0, 48.0), 1700.0: (-4.0, 10.0)}
 
 
 def draw_energies(path: Path, curves: dict[float, list[Row]], loads: Any) -> None:
@@ -30,12 +32,11 @@ def draw_energies(path: Path, curves: dict[float, list[Row]], loads: Any) -> Non
         rows = curves[load]
         for ratio, colour in zip((0.2, *ISOTROPIC), (ORANGE, BLUE, GREEN), strict=True):
             _energy_curve(ax, rows, ratio, colour)
-        ax.set(
-            xlabel="link $Lk$, turns", title=rf"$\hat\sigma={load:.0f}$", xlim=(-0.3, 1.5)
-        )
+        ax.set(xlabel="link $Lk$, turns", title=rf"$\hat\sigma={load:.0f}$")
+        ax.set(xlim=(0, 1.4), ylim=_ENERGIES[load])
         ax.set_ylabel(r"$E-E(\mathrm{flat,\ no\ twist})\,/\,(\alpha/L)$")
         frame(ax)
-    panels[0].legend(frameon=False, fontsize=8, title="$C/B$")
+    panels[1].legend(frameon=False, fontsize=8, title="$C/B$")
     save(figure, path)
 
 
@@ -47,7 +48,12 @@ def _energy_curve(ax: Any, rows: list[Row], ratio: float, colour: str) -> None:
     stable = np.array([not row.index and ratio > row.ratio for row in rows])
     ax.plot(links, np.where(stable, totals, np.nan), color=colour, label=f"{ratio:.3g}")
     ax.plot(links, np.where(stable, np.nan, totals), "--", color=colour, lw=1)
-    turned = np.linspace(0.0, 1.5, 61)
+    turned = np.linspace(0.0, 1.5, 151)
+    if rows[0].load < BUCKLING:
+        disk = 4 * pi**2 * ratio * turned**2
+        kept = turned < disk_link(rows[0].load, ratio)
+        ax.plot(turned[kept], disk[kept], color=colour, lw=1)
+        ax.plot(turned[~kept], disk[~kept], "--", color=colour, lw=1)
     pinched = flat_eight(rows[0].load).energy - flat + 4 * pi**2 * ratio * (turned - 1) ** 2
     ax.plot(turned, pinched, ":", color=colour, lw=1)
 

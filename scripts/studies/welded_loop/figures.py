@@ -16,7 +16,7 @@ from scripts.studies.welded_loop.answers import ISOTROPIC, Load, disk_link
 from scripts.studies.welded_loop.curves import Row
 
 _LOAD = r"$\hat\sigma=\sigma L^3/\alpha$"
-_LINKS = (0.25, 0.5, 0.75)
+_LINKS = (0.25, 0.4, 0.5)
 _SHOWN = 1700.0
 # Energies that are shown, above the flat film's, by load.
 _ENERGIES = {1000.0: (-2.0, 48.0), 1700.0: (-4.0, 10.0)}
@@ -90,10 +90,10 @@ def draw_map(path: Path, answers: list[Load], disk: list[tuple[float, float]]) -
 
 
 def draw_shapes(path: Path) -> None:
-    """Draw stable films of an isotropic rod turned by a quarter, a half, three quarters."""
+    """Draw stable films of an isotropic rod that was turned."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10, 2.9), layout="constrained")
+    figure = Figure(figsize=(10, 2.4), layout="constrained")
     for number, link in enumerate(_LINKS, start=1):
         found = rod_film(Start.LOBES, _SHOWN, ISOTROPIC[0], link)
         ax: Any = figure.add_subplot(1, len(_LINKS), number, projection="3d")

@@ -13,7 +13,8 @@ from .examples import write_examples as write_examples
 from .exploration import Exploration as Exploration, run_branches as run_branches
 from .folder import shape_name as shape_name
 from .kinds import Kind as Kind
-from .locus import Asked as Asked, Locus as Locus, run_locus as run_locus
+from .locus import run_locus as run_locus
+from .locus_record import Asked as Asked, Locus as Locus
 from .phase_diagram import run_phase_diagram as run_phase_diagram
 from .phases import REGIONS as REGIONS, PhaseDiagram as PhaseDiagram
 from .plan import load_with as load_with, planned as planned, run_name as run_name

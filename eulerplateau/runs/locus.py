@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +21,7 @@ from eulerplateau.film import FILM_LOADS
 from eulerplateau.interruption import heed, working_on
 from eulerplateau.loop import LEAST
 from eulerplateau.runs.inputs import make_mesh
+from eulerplateau.runs.locus_record import Asked, Locus
 from eulerplateau.runs.parameters import LOOP_PARAMETERS
 from eulerplateau.runs.record import read_run
 from eulerplateau.runs.rows import LoadName
@@ -34,41 +34,6 @@ LOCUS = "locus.csv"
 COLUMNS = (
     "arclength", "energy", "n_unstable", "coefficient", "kind", "special", "end", "residual"
 )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Asked:
-    """Which curve is asked for.
-
-    Attributes
-    ----------
-    run : folder of the branches that the special point is one of
-    number : of that point
-    second : name of the second parameter
-    low, high : where its window ends, by default as far from its own value as that is
-        from zero, or 1 if that is further
-    """
-
-    run: Path
-    number: int
-    second: str
-    low: float | None = None
-    high: float | None = None
-
-
-@dataclass(frozen=True)
-class Locus:
-    """A curve of special points, as it was written: `rows` are dicts by column."""
-
-    folder: Path
-    names: tuple[LoadName, LoadName]
-    rows: tuple[dict[str, Any], ...]
-    seconds: float
-
-    @property
-    def special(self) -> tuple[dict[str, Any], ...]:
-        """The rows of what is special on the way."""
-        return tuple(row for row in self.rows if row["special"] and row["arclength"])
 
 
 def run_locus(

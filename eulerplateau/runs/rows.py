@@ -214,6 +214,7 @@ class RatioBranchRow(_OfRatio, TwistBranchRow):
     """One point of a branch in the rigidity to twist."""
 
 
+@dataclass(frozen=True)
 class _OfCurvedRod(_OfTwist):
     """What a row says of a loop that is curved by nature besides.
 

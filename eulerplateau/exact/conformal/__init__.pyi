@@ -5,6 +5,7 @@ from .basis import (
     Basis as Basis,
     Curve as Curve,
     Family as Family,
+    finer_bases as finer_bases,
     make_basis as make_basis,
 )
 from .branch import (
@@ -12,7 +13,6 @@ from .branch import (
     BranchError as BranchError,
     BranchPoint as BranchPoint,
     change_basis as change_basis,
-    finer_bases as finer_bases,
     follow as follow,
     go_to_load as go_to_load,
     locate as locate,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import pi
@@ -17,6 +18,9 @@ from eulerplateau.exact.conformal.grading import Grading
 _POINTS = 4
 # Share of the harmonics, at the high end, whose size measures the error of truncation.
 _TAIL = 0.1
+# How far a basis is refined.
+MOST_HARMONICS = 288
+_MOST_CROWDED = 1e-12
 
 Harmonics = tuple[tuple[str, int], ...]  # ("cos" or "sin", parity of k)
 _BOTH: Harmonics = (("cos", 0), ("cos", 1), ("sin", 0), ("sin", 1))
@@ -212,6 +216,23 @@ def make_basis(harmonics: int, family: Family, crowding: float = 1.0) -> Basis:
     if not 0 < crowding <= 1:
         raise SpecError("crowding", f"found {crowding}; should be above 0 and at most 1")
     return Basis(harmonics, family, crowding)
+
+
+def finer_bases(basis: Basis, most_harmonics: int = MOST_HARMONICS) -> Iterator[Basis]:
+    """Yield bases that may resolve a film better: sharper gradings, more harmonics, both.
+
+    Sharper ones first, because they cost nothing.
+    """
+    more = 8 * round(basis.harmonics / 6)
+    for harmonics, sharper in (
+        (basis.harmonics, 3),
+        (basis.harmonics, 10),
+        (more, 1),
+        (more, 4),
+    ):
+        crowding = basis.crowding / sharper
+        if harmonics <= most_harmonics and crowding >= _MOST_CROWDED:
+            yield make_basis(harmonics, basis.family, crowding)
 
 
 def _values(

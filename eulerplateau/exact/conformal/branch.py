@@ -9,7 +9,12 @@ import numpy as np
 
 from eulerplateau.errors import EulerPlateauError
 from eulerplateau.exact.checks import finite
-from eulerplateau.exact.conformal.basis import Basis, Family, make_basis
+from eulerplateau.exact.conformal.basis import (
+    MOST_HARMONICS,
+    Family,
+    finer_bases,
+    make_basis,
+)
 from eulerplateau.exact.conformal.equilibrium import (
     ConformalFilm,
     Direction,
@@ -26,8 +31,6 @@ _FIRST, _SMALLEST = 0.02, 1e-6
 _LANDINGS, _LOCATIONS = 12, 60
 _LOCATED = 1e-4  # largest eigenvalue taken for zero, over those at the neighbours
 _CLOSE = 1e-3  # distance from a load from which Newton's method lands on it
-_MOST_CROWDED = 1e-12
-_MOST_HARMONICS = 288
 BETTER = 0.5  # a refinement that does not shrink the tail by this factor is dropped
 
 
@@ -154,7 +157,7 @@ def _land(before: BranchPoint, after: BranchPoint, load: float) -> BranchPoint:
 
 
 def resolve(
-    point: BranchPoint, tail: float, most_harmonics: int = _MOST_HARMONICS
+    point: BranchPoint, tail: float, most_harmonics: int = MOST_HARMONICS
 ) -> BranchPoint:
     """Return the same film with a tail of at most `tail`, or the least that refining gives.
 
@@ -177,23 +180,6 @@ def resolve(
             break
         point = finer
     return point
-
-
-def finer_bases(basis: Basis, most_harmonics: int = _MOST_HARMONICS) -> Iterator[Basis]:
-    """Yield bases that may resolve a film better: sharper gradings, more harmonics, both.
-
-    Sharper ones first, because they cost nothing.
-    """
-    more = 8 * round(basis.harmonics / 6)
-    for harmonics, sharper in (
-        (basis.harmonics, 3),
-        (basis.harmonics, 10),
-        (more, 1),
-        (more, 4),
-    ):
-        crowding = basis.crowding / sharper
-        if harmonics <= most_harmonics and crowding >= _MOST_CROWDED:
-            yield make_basis(harmonics, basis.family, crowding)
 
 
 def change_basis(point: BranchPoint, harmonics: int, crowding: float) -> BranchPoint | None:

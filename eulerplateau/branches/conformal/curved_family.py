@@ -35,6 +35,10 @@ class CurvedFamily(SmoothFamily):
         ratio, curvature = values["twist_ratio"], values["rest_curvature"]
         return SmoothRod(self.unknowns, self.frames, ratio, curvature)
 
+    def tail(self, x: FloatArray) -> float:
+        """Return the relative error of truncation, roughly: the loop's, or the frame's."""
+        return max(super().tail(x), self.frames.tail(self.unknowns.others(x)))
+
     def carried(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
         """Return what stands here for a film of another family, of the same grid."""
         coefficients = other.unknowns.loop(x).coefficients

@@ -119,6 +119,10 @@ class SmoothFamily:
         energy = family.energy(point.value)
         return stability(tangent_model(energy, family.carried(self, point.x)))
 
+    def tail(self, x: FloatArray) -> float:
+        """Return the relative error of truncation in the loop's tangent, roughly."""
+        return self.basis.tail(self.unknowns.loop(x).coefficients)
+
     def carried(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
         """Return what stands here for a film of another family, of the same grid."""
         coefficients = other.unknowns.loop(x).coefficients

@@ -60,6 +60,7 @@ class RodFilm:
     film : its loop, whose energy is that of film and bending
     energy : film, bending and twist together
     n_unstable : the Morse index
+    tail : the relative error of truncation, roughly, of the loop and of a frame
     """
 
     film: ConformalFilm
@@ -70,11 +71,12 @@ class RodFilm:
     writhe: float
     twist_moment: float
     n_unstable: int
+    tail: float
 
     @property
     def resolved(self) -> bool:
         """Whether the harmonics resolve it to ten digits."""
-        return self.film.tail < TAIL
+        return self.tail < TAIL
 
     def numbers(self) -> dict[str, float | int | str]:
         """Return what is said of it, by names."""
@@ -90,7 +92,7 @@ class RodFilm:
             "total_gauss_curvature": frame.total_gauss_curvature,
             "waist": waist(self.film),
             "n_unstable": self.n_unstable,
-            "tail": self.film.tail,
+            "tail": self.tail,
             "residual": self.film.residual,
             "status": "converged" if self.resolved else "unresolved",
         }
@@ -275,6 +277,7 @@ def _measured(point: BranchPoint) -> RodFilm:
         writhe=twist.writhe(point.x),
         twist_moment=twist.moment(point.x),
         n_unstable=family.in_space(point).n_unstable,
+        tail=family.tail(point.x),
     )
 
 

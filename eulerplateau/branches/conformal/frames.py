@@ -93,6 +93,15 @@ class Frames:
         twisted = turning - pz * sideways * speed / flat
         return bent, twisted, speed
 
+    def tail(self, chi: FloatArray) -> float:
+        """Return the largest k |c_k| in the last tenth of the harmonics, of the largest or 1.
+
+        The error that truncation leaves in the frame's turning, roughly.
+        """
+        sizes = self.wavenumbers * np.abs(chi)
+        high = sizes[self.wavenumbers > 0.9 * self.basis.harmonics]
+        return float(high.max(initial=0.0) / max(sizes.max(initial=0.0), 1.0))
+
     def embed(self, other: Frames, chi: FloatArray) -> FloatArray:
         """Return the coefficients here of another frame's, harmonic by harmonic."""
         there = dict(zip(other.columns, chi, strict=True))

@@ -20,9 +20,8 @@ TAIL = 1e-10
 
 
 def tail(point: BranchPoint) -> float:
-    """Return the relative error that truncation leaves in the loop's tangent, roughly."""
-    family = smooth_family(point)
-    return family.basis.tail(family.unknowns.loop(point.x).coefficients)
+    """Return the relative error of truncation, roughly."""
+    return smooth_family(point).tail(point.x)
 
 
 def resolved(point: BranchPoint, control: StepControl, within: float = TAIL) -> BranchPoint:

@@ -94,7 +94,7 @@ class Frames:
         return bent, twisted, speed
 
     def tail(self, chi: FloatArray) -> float:
-        """Return the largest k |c_k| in the last tenth of the harmonics, of the largest or 1.
+        """Return the largest k |c_k| in the last tenth of harmonics, of the largest or 1.
 
         The error that truncation leaves in the frame's turning, roughly.
         """

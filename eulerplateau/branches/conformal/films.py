@@ -15,7 +15,7 @@ from itertools import chain, pairwise
 
 from scipy.optimize import brentq
 
-from eulerplateau.branches.conformal.by_writhe import CONTROL, films_by_writhe
+from eulerplateau.branches.conformal.by_writhe import CONTROL, NARROWEST, films_by_writhe
 from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
@@ -34,8 +34,6 @@ from eulerplateau.exact.conformal import (
 
 _ROUND_HARMONICS = 16
 _FOUND = 1e-13
-# Waist, in L, down to which a film is followed: then it pinches.
-_NARROWEST = 1e-3
 
 
 # Neighbours on a branch, and what is looked for between them.
@@ -142,7 +140,7 @@ def _straight_rod(start: Start, values: Mapping[str, float]) -> BranchPoint:
             f"found {load:g}; lobes exist above {BUCKLING:.6g}, where the disk buckles"
         )
         raise SpecError("load", problem)
-    path = films_by_writhe(load, _NARROWEST)
+    path = films_by_writhe(load)
     if start is Start.LOBES and link == 0.0:
         return _with_rod(next(iter(path)), values)
     between = _between if start is Start.LOBES else _twisted_between
@@ -205,7 +203,8 @@ def _between(points: Iterable[BranchPoint], held: _Held) -> Neighbours:
             return before, after, held
         if abs(value - held.wanted) >= abs(past - held.wanted):
             raise NoFilmError(f"the branch folds near {held.said(past)}")
-    raise NoFilmError(f"the film pinches near {held.said(value)}")
+    closes = f"its waist is narrower than {NARROWEST:g} L beyond {held.said(value)}"
+    raise NoFilmError(f"the film pinches: {closes}")
 
 
 def _twisted_between(path: Iterable[BranchPoint], held: _Held) -> Neighbours:

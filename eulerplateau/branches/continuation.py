@@ -44,11 +44,16 @@ class Place:
     left: int
 
 
+def never(before: BranchPoint, after: BranchPoint) -> bool:
+    """Return that no step leaps."""
+    return False
+
+
 def follow(
     start: BranchPoint,
     control: StepControl,
     stop: Callable[[BranchPoint], bool] = lambda point: False,
-    leaps: Callable[[BranchPoint, BranchPoint], bool] = lambda before, after: False,
+    leaps: Callable[[BranchPoint, BranchPoint], bool] = never,
 ) -> Iterator[BranchPoint]:
     """Yield the points after `start` until the branch leaves the window or `stop` is true.
 
@@ -69,7 +74,9 @@ def outside(point: BranchPoint, control: StepControl) -> bool:
 
 
 def next_place(
-    place: Place, control: StepControl, leaps: Callable[[BranchPoint, BranchPoint], bool]
+    place: Place,
+    control: StepControl,
+    leaps: Callable[[BranchPoint, BranchPoint], bool] = never,
 ) -> Place | None:
     """Return the next place on a branch; None if there is none, or there were enough."""
     if place.left == 0:

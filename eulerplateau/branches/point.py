@@ -129,6 +129,13 @@ def point_near(
     return correct(family, x, value, at_this_value, control)
 
 
+def ahead(point: BranchPoint, value: float, least: float = 0.0) -> BranchPoint | None:
+    """Return the equilibrium at a value near a point's own, along its branch; or None."""
+    way = point.direction
+    guess = point.x + (value - point.value) / way.rate * way.displacement
+    return point_near(point.family, guess, value, least)
+
+
 def along(point: BranchPoint, other: BranchPoint, control: StepControl) -> float:
     """Return how far `other` lies from `point` along the branch's direction there."""
     way = Direction(other.x - point.x, other.value - point.value)

@@ -85,7 +85,7 @@ def energy_next_to(found, **changed):
     start = family.unknowns.x(found.film.coefficients)
     point = point_near(family, start, family.values["load"])
     twist = family.twist(point.value)
-    return family.film(point.x, point.model).energy + twist.energy(point.x)
+    return family.film(point).energy + twist.energy(point.x)
 
 
 def test_energy_changes_by_area_and_moment():
@@ -113,6 +113,13 @@ def test_twist_that_costs_nothing_gives_back_known_films():
     off_plane, same = film("unstable"), twisted(1700.0).film
     assert off_plane.energy == pytest.approx(same.energy, rel=1e-10)
     assert off_plane.film.area == pytest.approx(same.area, rel=1e-9)
+
+
+def test_rod_that_was_hardly_turned_writhes_in_proportion():
+    """Lk - Wr = Wr E_0''(0) / (8 pi^2 C/B), up to the cube."""
+    stiff = stiffness(next(films_by_writhe(1700.0))) / (8 * pi**2 * 0.7)
+    found = rod_film(Start.LOBES, 1700.0, 0.7, 1e-3)
+    assert found.writhe == pytest.approx(1e-3 / (1 + stiff), rel=1e-4)
 
 
 def test_mirror_image_of_a_rod_turned_the_other_way():

@@ -70,7 +70,7 @@ def films_by_writhe(
     place: Place | None = Place(point, step, CONTROL.max_points)
     while place is not None and waist(film_of(place.point)) > narrowest:
         yield place.point
-        place = next_place(place, CONTROL, lambda before, after: False)
+        place = next_place(place, CONTROL)
         if place is not None:
             place = replace(place, point=resolved(place.point, CONTROL))
 
@@ -86,7 +86,7 @@ def lobes_at(load: float) -> BranchPoint:
 
 def film_of(point: BranchPoint) -> ConformalFilm:
     """Return the film of a point."""
-    return smooth_family(point).film(point.x, point.model)
+    return smooth_family(point).film(point)
 
 
 def stiffness(point: BranchPoint) -> float:

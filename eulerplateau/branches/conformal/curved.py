@@ -9,7 +9,13 @@ from eulerplateau.branches.conformal.curved_family import CurvedFamily
 from eulerplateau.branches.conformal.family import smooth_family
 from eulerplateau.branches.conformal.resolution import resolved
 from eulerplateau.branches.continuation import Place, next_place
-from eulerplateau.branches.point import BranchPoint, StepControl, first_point, point_near
+from eulerplateau.branches.point import (
+    BranchPoint,
+    StepControl,
+    ahead,
+    first_point,
+    point_near,
+)
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
 
 
@@ -43,20 +49,14 @@ def curved(point: BranchPoint, rest_curvature: float) -> BranchPoint:
     place = Place(first_point(family, start.x, 0.0, control), 0.1, control.max_points)
     while True:
         before = place.point
-        after = next_place(place, control, lambda one, other: False)
+        after = next_place(place, control)
         if after is None or after.point.value < before.value:
             problem = f"the branch folds near the rest curvature {before.value:.4g}"
             raise NoFilmError(problem)
         if after.point.value >= rest_curvature:
-            return _landed(before, rest_curvature, control)
+            found = ahead(before, rest_curvature, control.least)
+            if found is None:
+                problem = f"Newton's method fails at the rest curvature {rest_curvature:g}"
+                raise NoFilmError(problem)
+            return resolved(found, control)
         place = replace(after, point=resolved(after.point, control))
-
-
-def _landed(point: BranchPoint, value: float, control: StepControl) -> BranchPoint:
-    """Return the film next to a point at a value just ahead."""
-    way = point.direction
-    guess = point.x + (value - point.value) / way.rate * way.displacement
-    found = point_near(point.family, guess, value, control.least)
-    if found is None:
-        raise NoFilmError(f"Newton's method fails at the rest curvature {value:g}")
-    return resolved(found, control)

@@ -29,7 +29,7 @@ from eulerplateau.exact.conformal import (
     make_basis,
 )
 from eulerplateau.loop import LoopEnergy, Term
-from eulerplateau.solvers import Stability, TangentModel, stability, tangent_model
+from eulerplateau.solvers import Stability, stability, tangent_model
 
 
 @dataclass(frozen=True)
@@ -79,20 +79,21 @@ class SmoothFamily:
         """Return the loop (n, 3) at the points of the grid."""
         return self.unknowns.loop(x).curve.x
 
-    def film(self, x: FloatArray, model: TangentModel) -> ConformalFilm:
-        """Return the film on a loop x, of which `model` is made."""
-        c = self.unknowns.loop(x).coefficients
-        load, area = self.values["load"], float(0.5 * c @ self.basis.dirichlet @ c)
-        bending = bending_energy(self.basis.curve(c))
+    def film(self, point: BranchPoint) -> ConformalFilm:
+        """Return the film of a point of a branch."""
+        loop = self.unknowns.loop(point.x)
+        c, load = loop.coefficients, self._values(point.value)["load"]
+        area = float(0.5 * c @ self.basis.dirichlet @ c)
+        bending = bending_energy(loop.curve)
         return ConformalFilm(
             basis=self.basis,
             coefficients=c,
-            beta=float(model.tensions[0]),
+            beta=float(point.model.tensions[0]),
             load=load,
             energy=bending + load * area,
             area=area,
             bending=bending,
-            residual=model.residual,
+            residual=point.model.residual,
             corrections=0,
         )
 

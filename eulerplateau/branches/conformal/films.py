@@ -19,7 +19,7 @@ from eulerplateau.branches.conformal.by_writhe import CONTROL, NARROWEST, films_
 from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
-from eulerplateau.branches.point import BranchPoint, point_near
+from eulerplateau.branches.point import BranchPoint, ahead, point_near
 from eulerplateau.errors import SpecError
 from eulerplateau.exact import finite
 from eulerplateau.exact.conformal import (
@@ -226,11 +226,9 @@ def _twisted_between(path: Iterable[BranchPoint], held: _Held) -> Neighbours:
 
 def _located(before: BranchPoint, after: BranchPoint, held: _Held) -> BranchPoint:
     """Return the film between two neighbours that is held by what is wanted."""
-    family, way = smooth_family(before), before.direction
 
     def at(value: float) -> BranchPoint:
-        guess = before.x + (value - before.value) / way.rate * way.displacement
-        found = point_near(family, guess, value)
+        found = ahead(before, value, CONTROL.least)
         if found is None:
             raise NoFilmError(f"Newton's method fails near the writhe {value:.4g}")
         return found
@@ -266,7 +264,7 @@ def _flat_disk(values: Mapping[str, float]) -> BranchPoint:
 def _measured(point: BranchPoint) -> RodFilm:
     """Return the film of a point, with all its numbers."""
     family = smooth_family(point)
-    film, twist = family.film(point.x, point.model), family.twist(point.value)
+    film, twist = family.film(point), family.twist(point.value)
     return RodFilm(
         film=film,
         twist_ratio=twist.ratio,

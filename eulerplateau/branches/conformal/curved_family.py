@@ -12,7 +12,7 @@ from eulerplateau.branches.conformal.family import SmoothFamily
 from eulerplateau.branches.conformal.frames import Frames
 from eulerplateau.branches.conformal.rod_term import SmoothRod
 from eulerplateau.branches.conformal.terms import Unknowns
-from eulerplateau.exact.conformal import Curve, gauge_modes
+from eulerplateau.exact.conformal import Curve, gauge_fields, gauge_modes, slides
 
 
 @dataclass(frozen=True)
@@ -61,27 +61,23 @@ class CurvedFamily(SmoothFamily):
     def _free_motions(self, x: FloatArray) -> FloatArray:
         u, curve = self.unknowns, self.unknowns.loop(x).curve
         loops = gauge_modes(u.basis, curve)
-        frame = np.column_stack(
-            [self._frame_motion(curve, x, moved) for moved in loops.T]
-            or [np.zeros((len(u.frame_scale), 0))]
-        )
+        frame = self.frames.project(self._turning(curve, x, loops))
         return np.vstack([loops, frame]) / u.scales[:, None]
 
-    def _frame_motion(self, curve: Curve, x: FloatArray, moved: FloatArray) -> FloatArray:
-        """Return how the frame's coefficients (m,) change in a motion of the loop.
+    def _turning(self, curve: Curve, x: FloatArray, loops: FloatArray) -> FloatArray:
+        """Return how psi (n, m) changes in motions of the loop (size, m) that cost nothing.
 
-        A motion that costs nothing turns the loop by omega and lets it slide by a x': it
-        is found from the displacement, of which it is the only part along these.
+        Each turns the loop by omega and lets it slide by a x': both are found from the
+        displacement, which is a sum of these.
         """
-        basis, field = self.basis, self.basis.curve(moved).x
-        theta, rate = basis.theta, basis.rate
-        slide = curve.x1 / rate[:, None]
-        factors = np.stack([np.ones(len(theta)), np.cos(theta), np.sin(theta)])
-        known = [np.cross(axis, curve.x) for axis in np.eye(3)]
-        known += [factor[:, None] * slide for factor in factors]
-        columns = np.stack([(k - k.mean(axis=0)).ravel() for k in known], axis=1)
-        share = np.linalg.lstsq(columns, field.ravel(), rcond=1e-9)[0]
-        changed = self.frames.turned(curve, share[:3])
+        basis = self.basis
+        fields = gauge_fields(basis, curve)
+        inside = (fields - fields.mean(axis=0)).reshape(-1, fields.shape[2])
+        moved = np.array([basis.curve(c).x.ravel() for c in loops.T])
+        moved = moved.reshape(loops.shape[1], len(inside)).T
+        share = np.linalg.lstsq(inside, moved, rcond=1e-9)[0]
+        turned = np.column_stack([self.frames.turned(curve, e) for e in np.eye(3)])
         _, turning = self.frames.angle(self.unknowns.others(x))
-        changed = changed + (share[3:] @ factors) / rate * turning
-        return self.frames.project(changed)
+        slid = (slides(basis) / basis.rate * turning).T
+        changed: FloatArray = np.column_stack([turned, slid]) @ share
+        return changed

@@ -23,7 +23,7 @@ from math import pi
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.conformal import GENERAL, Basis, Curve, Jet, dot, variables
+from eulerplateau.exact.conformal import GENERAL, Basis, Curve, Jet, dot, variables, waves
 
 
 @dataclass(frozen=True)
@@ -36,13 +36,13 @@ class Frames:
     basis: Basis
 
     @cached_property
-    def columns(self) -> list[tuple[str, int]]:
+    def columns(self) -> tuple[tuple[str, int], ...]:
         """("cos" or "sin", k) of each coefficient."""
         most = self.basis.harmonics
         if self.basis.family is GENERAL:
-            waves = [(kind, k) for k in range(1, most + 1) for kind in ("cos", "sin")]
-            return [("cos", 0), *waves]
-        return [("sin", k) for k in range(2, most + 1, 2)]
+            every = ((kind, k) for k in range(1, most + 1) for kind in ("cos", "sin"))
+            return ("cos", 0), *every
+        return tuple(("sin", k) for k in range(2, most + 1, 2))
 
     @cached_property
     def wavenumbers(self) -> FloatArray:
@@ -51,14 +51,9 @@ class Frames:
 
     @cached_property
     def _values(self) -> tuple[FloatArray, FloatArray]:
-        return self._at(self.basis.phi)
-
-    def _at(self, phi: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the columns' values and derivatives, (n, m) each."""
-        angle = np.outer(phi, self.wavenumbers)
-        cosine, sine, k = np.cos(angle), np.sin(angle), self.wavenumbers
-        even = np.array([kind == "cos" for kind, _ in self.columns])
-        return np.where(even, cosine, sine), np.where(even, -k * sine, k * cosine)
+        """The columns' values and derivatives at the grid, (n, m) each."""
+        values, slopes, _ = waves(self.columns, self.basis.phi)
+        return values, slopes
 
     @cached_property
     def design(self) -> FloatArray:
@@ -121,7 +116,7 @@ class Frames:
 
     def transfer(self, other: Frames, chi: FloatArray) -> FloatArray:
         """Return the coefficients here of another frame's, theta kept."""
-        values, _ = other._at(self.basis.phi_of(other.basis))
+        values, _, _ = waves(other.columns, self.basis.phi_of(other.basis))
         return self.project(values @ chi)
 
     def turned(self, curve: Curve, axis: FloatArray) -> FloatArray:
@@ -137,7 +132,7 @@ class Frames:
         return changed
 
     def project(self, angles: FloatArray) -> FloatArray:
-        """Return the coefficients (m,) of angles (n,) at the grid, least squares."""
+        """Return the coefficients (m, ...) of angles (n, ...) at the grid."""
         values, _ = self._values
-        found: FloatArray = values.T @ angles / (values**2).sum(axis=0)
+        found: FloatArray = (values / (values**2).sum(axis=0)).T @ angles
         return found

@@ -50,7 +50,8 @@ class SmoothRod(Term):
 
     def twist_energy(self, x: FloatArray) -> float:
         """Return the part of R that is due to twist."""
-        return 2 * self.ratio * self._integral(self._squared(x).value)
+        _, twisted, speed = self._parts(x)
+        return 2 * self.ratio * self._integral(_squared(twisted, speed).value)
 
     def energy(self, x: FloatArray) -> float:
         """Return R."""
@@ -74,21 +75,17 @@ class SmoothRod(Term):
     def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
         """Return the derivative of the force by "twist_ratio" or "rest_curvature"."""
         if parameter == "twist_ratio":
-            return 2 * self._slope(self._squared(x))
+            _, twisted, speed = self._parts(x)
+            return 2 * self._slope(_squared(twisted, speed))
         if parameter == "rest_curvature":
             return -4 * math.pi * self._slope(self._parts(x)[0])
         return None
 
     def _density(self, x: FloatArray) -> Jet:
         """Return dR/dphi, but for the constant."""
-        bent, squared = self._parts(x)[0], self._squared(x)
-        twisted = squared.times(2 * self.ratio)
-        return twisted + bent.times(-4 * math.pi * self.rest_curvature)
-
-    def _squared(self, x: FloatArray) -> Jet:
-        """Return Omega^2 / 2 ds/dphi."""
-        _, twisted, speed = self._parts(x)
-        return (twisted * twisted / speed).times(0.5)
+        bent, twisted, speed = self._parts(x)
+        turned = _squared(twisted, speed).times(2 * self.ratio)
+        return turned + bent.times(-4 * math.pi * self.rest_curvature)
 
     def _parts(self, x: FloatArray) -> tuple[Jet, Jet, Jet]:
         loop = self.unknowns.loop(x)
@@ -101,3 +98,8 @@ class SmoothRod(Term):
         slope = np.einsum("nk,nkt->t", jet.slope, self.frames.design)
         scaled: FloatArray = self.unknowns.basis.weight * self.unknowns.scales * slope
         return scaled[:, None]
+
+
+def _squared(twisted: Jet, speed: Jet) -> Jet:
+    """Return Omega^2 / 2 ds/dphi of Omega ds/dphi and ds/dphi."""
+    return (twisted * twisted / speed).times(0.5)

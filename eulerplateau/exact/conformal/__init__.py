@@ -4,7 +4,8 @@
     basis.py        loops as trigonometric polynomials, and their symmetry; grading.py:
                     grids for narrow waists; sector.py: the part that symmetry repeats
     energy.py       bending, length, area and their derivatives
-    equilibrium.py  Newton's method to an equilibrium, stable or not
+    equilibrium.py  Newton's method to an equilibrium, stable or not; gauge.py: motions that
+                    change nothing
     branch.py       branches: followed, located, switched; second_variation.py: stability
     geometry.py     the film as a surface, its edge and its waist
     eight.py        the flat eight, eight_modes.py: its stability; held_waist.py: films

@@ -7,6 +7,7 @@ from .basis import (
     Family as Family,
     finer_bases as finer_bases,
     make_basis as make_basis,
+    waves as waves,
 )
 from .branch import (
     BETTER as BETTER,
@@ -33,8 +34,12 @@ from .equilibrium import (
     ConformalFilm as ConformalFilm,
     correct as correct,
     disk as disk,
-    gauge_modes as gauge_modes,
     precondition as precondition,
+)
+from .gauge import (
+    gauge_fields as gauge_fields,
+    gauge_modes as gauge_modes,
+    slides as slides,
 )
 from .geometry import (
     Edge as Edge,

@@ -132,7 +132,7 @@ class Basis:
     @cached_property
     def matrices(self) -> tuple[tuple[FloatArray, FloatArray, FloatArray], ...]:
         """For each coordinate the values of its columns and of their two derivatives."""
-        return tuple(_values(part, self.phi) for part in self.columns)
+        return tuple(waves(part, self.phi) for part in self.columns)
 
     @cached_property
     def dirichlet(self) -> FloatArray:
@@ -163,7 +163,7 @@ class Basis:
     def at(self, coefficients: FloatArray, phi: FloatArray) -> Curve:
         """Return the loop at any phi (n,)."""
         parts = [
-            [values @ coefficients[part] for values in _values(columns, phi)]
+            [values @ coefficients[part] for values in waves(columns, phi)]
             for columns, part in zip(self.columns, self.slices, strict=True)
         ]
         x, x1, x2 = (np.stack(order, axis=-1) for order in zip(*parts, strict=True))
@@ -235,7 +235,7 @@ def finer_bases(basis: Basis, most_harmonics: int = MOST_HARMONICS) -> Iterator[
             yield make_basis(harmonics, basis.family, crowding)
 
 
-def _values(
+def waves(
     columns: tuple[tuple[str, int], ...], phi: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the columns' values and first two derivatives, each (n, columns)."""

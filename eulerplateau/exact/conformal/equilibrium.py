@@ -25,6 +25,7 @@ from eulerplateau.exact.conformal.energy import (
     length_hessian,
     terms,
 )
+from eulerplateau.exact.conformal.gauge import gauge_modes
 
 # A change of sigma_hat by this much is as long as a change of the loop by one length.
 LOAD_UNIT = 1000.0
@@ -36,8 +37,6 @@ _SETTLED, _STUCK = 1e-13, 1e-9
 _GAUGE_STIFFNESS = 1e3
 # Largest change of the loop in one step, as a sum of k |dc|, in lengths.
 _TRUST = 0.5
-# Relative singular value below which motions that change nothing coincide.
-_SAME = 1e-6
 
 
 @dataclass(frozen=True, repr=False)
@@ -244,28 +243,6 @@ def precondition(basis: Basis) -> FloatArray:
     k = basis.wavenumbers
     scale: FloatArray = 1 / (k * np.sqrt(1 + k**2))
     return scale
-
-
-def gauge_modes(basis: Basis, curve: Curve) -> FloatArray:
-    """Return orthonormal motions (size, m) that change no energy and keep the symmetry.
-
-    Of the rotations and the conformal maps of the disk onto itself (x_theta times 1,
-    cos theta, sin theta), those that have the symmetry of `basis`, which need not be the
-    curve's: each has it or is orthogonal to it. Two coincide for the disk.
-    """
-    theta, n = basis.theta, len(basis.phi)
-    x_theta = curve.x1 / basis.rate[:, None]
-    turned = np.cross(np.eye(3)[:, None], curve.x)
-    factors = np.stack([np.ones(n), np.cos(theta), np.sin(theta)])
-    fields = np.concatenate([turned, factors[:, :, None] * x_theta]).transpose(1, 2, 0)
-    inside = basis.project(fields)
-    whole = (2 / n) * np.square(fields - fields.mean(axis=0)).sum(axis=(0, 1))
-    sizes = np.square(inside).sum(axis=0)
-    found = (inside / np.sqrt(sizes + 1e-300))[:, sizes > 0.5 * whole]
-    if not found.size:
-        return np.zeros((basis.size, 0))
-    directions, sizes, _ = np.linalg.svd(found, full_matrices=False)
-    return directions[:, sizes > _SAME * sizes[0]].astype(np.float64)
 
 
 def _gradient(t: Terms, beta: float, load: float) -> FloatArray:

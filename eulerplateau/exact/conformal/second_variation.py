@@ -26,10 +26,10 @@ from eulerplateau.exact.conformal.basis import (
 from eulerplateau.exact.conformal.energy import length_gradient
 from eulerplateau.exact.conformal.equilibrium import (
     ConformalFilm,
-    gauge_modes,
     lagrangian_hessian,
     precondition,
 )
+from eulerplateau.exact.conformal.gauge import gauge_modes
 
 # Shifts tried, in units of alpha/L^4, to make the Hessian positive.
 _SHIFTS = 10.0 ** np.arange(3, 16)

@@ -87,5 +87,4 @@ def _control(problem: Problem, parameter: str, window: Window) -> StepControl:
 
 def _pinched(point: LocusPoint) -> bool:
     """Return whether strands meet, which would pass through each other beyond."""
-    terms = family_of(_on_branch(point)).problem.loop.terms.values()
-    return any(term.pinched(point.model.x) for term in terms)
+    return family_of(_on_branch(point)).problem.loop.pinched(point.model.x)

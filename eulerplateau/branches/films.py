@@ -220,8 +220,7 @@ def _control(problem: Problem, parameter: str, window: tuple[float, float]) -> S
 
 def _pinched(point: BranchPoint) -> bool:
     """Return whether strands meet, which would pass through each other beyond."""
-    loop = family_of(point).problem.loop
-    return any(term.pinched(point.x) for term in loop.terms.values())
+    return family_of(point).problem.loop.pinched(point.x)
 
 
 def _held(parameter: str, load: float | None, start: Equilibrium | None) -> float:

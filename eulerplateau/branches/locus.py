@@ -23,8 +23,13 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.locus_point import Course, LocusPoint, Motion, correct, trial
 from eulerplateau.branches.point import BranchPoint, Direction, StepControl
-from eulerplateau.branches.special import FOLD, NO_PART, SpecialPoint, part_along
-from eulerplateau.branches.symmetry import mode_symmetry
+from eulerplateau.branches.special import (
+    FOLD,
+    NO_PART,
+    SpecialPoint,
+    part_along,
+    symmetry_at,
+)
 from eulerplateau.errors import SpecError
 from eulerplateau.solvers import RESIDUAL_TOLERANCE, tangent_model
 
@@ -60,22 +65,20 @@ class End(StrEnum):
 
 def special_at(family: Family, x: FloatArray, value: float, kind: str) -> SpecialPoint:
     """Return a special point of a kind, as branches have them, from its loop (n, d)."""
-    energy = family.energy(value)
-    model = tangent_model(energy, x)
+    model = tangent_model(family.energy(value), x)
     values, vectors = model.eigen
     index = int(np.abs(values).argmin())
     mode = model.displacement(vectors[:, index])
-    level = Direction(np.zeros_like(x), 1.0)
-    loop, moved = family.positions(x), family.positions(mode)
+    point = BranchPoint(family, model, value, Direction(np.zeros_like(x), 1.0), 0.0, 0)
     return SpecialPoint(
         kind=kind,
-        point=BranchPoint(family, model, value, level, 0.0, 0),
+        point=point,
         mode=mode,
         eigenvalue=float(values[index]),
         error=0.0,
         n_unstable=index,
         multiplicity=1,
-        symmetry=mode_symmetry(loop, moved, mirrors=not energy.is_handed),
+        symmetry=symmetry_at(point, mode),
     )
 
 

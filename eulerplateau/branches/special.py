@@ -272,9 +272,12 @@ def _describe(
         error=interval.error(point, index),
         n_unstable=index,
         multiplicity=multiplicity,
-        symmetry=mode_symmetry(
-            point.family.positions(point.x),
-            point.family.positions(mode),
-            mirrors=not point.energy.is_handed,
-        ),
+        symmetry=symmetry_at(point, mode),
     )
+
+
+def symmetry_at(point: BranchPoint, mode: FloatArray) -> ModeSymmetry:
+    """Return what a displacement `mode` (n, d) does to the symmetries of a point's loop."""
+    positions = point.family.positions
+    handed = point.energy.is_handed
+    return mode_symmetry(positions(point.x), positions(mode), mirrors=not handed)

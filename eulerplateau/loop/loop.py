@@ -43,6 +43,10 @@ class Loop:
         object.__setattr__(made, "terms", own)
         return made
 
+    def pinched(self, x: FloatArray) -> bool:
+        """Return whether a loop (n, d) meets itself where that ends what a term says."""
+        return any(term.pinched(x) for term in self.terms.values())
+
     @cached_property
     def mean_lengths(self) -> FloatArray:
         """<s_v> = (s_v + s_{v-1}) / 2 (n_b,), the length that belongs to vertex v."""

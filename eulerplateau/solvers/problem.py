@@ -182,8 +182,7 @@ class Problem:
 
     def pinched(self, shape: Shape) -> bool:
         """Return whether strands meet where there is no film, or no loop, beyond that."""
-        own = any(term.pinched(shape.x_loop) for term in self.loop.terms.values())
-        return own or self.film.pinched(shape, self.loop)
+        return self.loop.pinched(shape.x_loop) or self.film.pinched(shape, self.loop)
 
     def equilibrium(
         self, shape: Shape, tensions: FloatArray, load: float, status: Status

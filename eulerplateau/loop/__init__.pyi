@@ -37,6 +37,7 @@ from .turns import (
     length_metric as length_metric,
 )
 from .twist import (
+    EvenTwist as EvenTwist,
     PlaneTwist as PlaneTwist,
     Twist as Twist,
     polygon_writhe as polygon_writhe,

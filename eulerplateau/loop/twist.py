@@ -11,6 +11,7 @@ gamma = C / alpha = 2 C / B, C the rigidity to twist and B = 2 alpha that to ben
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -20,7 +21,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.frames import directors
 from eulerplateau.loop.loop import Loop, backward_differences, differences
-from eulerplateau.loop.term import OwnTerm
+from eulerplateau.loop.term import OwnTerm, Term
 from eulerplateau.loop.writhe_kernels import (
     add_edge_blocks,
     tangent_area,
@@ -35,8 +36,59 @@ _PASSED = 0.5
 _KEPT = 4
 
 
+class EvenTwist(Term):
+    """The twisting energy of a welded loop, whatever stands for the loop.
+
+    Attributes
+    ----------
+    ratio : float, C / B
+    link : float, Lk, in turns; right-handed turns count positive
+    """
+
+    ratio: float
+    link: float
+
+    @abstractmethod
+    def writhe(self, x: FloatArray) -> float:
+        """Return Wr of a loop."""
+
+    @abstractmethod
+    def slope(self, x: FloatArray) -> FloatArray:
+        """Return dWr/dx, as a force is."""
+
+    @property
+    def gamma(self) -> float:
+        """C / alpha."""
+        return 2 * self.ratio
+
+    @property
+    def is_handed(self) -> bool:
+        """Whether a loop and its mirror image differ in energy: if it was turned."""
+        return self.link != 0.0
+
+    def moment(self, x: FloatArray) -> float:
+        """Return the twisting moment M, in units of alpha / L."""
+        return self.gamma * 2 * math.pi * (self.link - self.writhe(x))
+
+    def energy(self, x: FloatArray) -> float:
+        """Return the twisting energy."""
+        return math.pi * (self.link - self.writhe(x)) * self.moment(x)
+
+    def force(self, x: FloatArray) -> FloatArray:
+        """Return -2 pi M dWr/dx."""
+        return -2 * math.pi * self.moment(x) * self.slope(x)
+
+    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return the derivative of the force by "link" or "twist_ratio"."""
+        if parameter == "link":
+            return -4 * math.pi**2 * self.gamma * self.slope(x)
+        if parameter == "twist_ratio":
+            return -8 * math.pi**2 * (self.link - self.writhe(x)) * self.slope(x)
+        return None
+
+
 @dataclass(frozen=True)
-class Twist(OwnTerm):
+class Twist(EvenTwist, OwnTerm):
     """The twisting energy of a welded loop x (n, 3), in units of alpha / L.
 
     Attributes
@@ -52,11 +104,6 @@ class Twist(OwnTerm):
     _known: list[tuple[FloatArray, float]] = field(default_factory=list, repr=False)
 
     @property
-    def gamma(self) -> float:
-        """C / alpha."""
-        return 2 * self.ratio
-
-    @property
     def parameters(self) -> Mapping[str, float]:
         """The link and C / B."""
         return {"link": self.link, "twist_ratio": self.ratio}
@@ -66,11 +113,6 @@ class Twist(OwnTerm):
         if parameter == "link":
             return replace(self, link=value)
         return replace(self, ratio=value) if parameter == "twist_ratio" else self
-
-    @property
-    def is_handed(self) -> bool:
-        """Whether a loop and its mirror image differ in energy: if it was turned."""
-        return self.link != 0.0
 
     @property
     def rounding(self) -> float:
@@ -89,14 +131,6 @@ class Twist(OwnTerm):
         self._known[:] = [(x.copy(), found), *self._known[: _KEPT - 1]]
         return found
 
-    def moment(self, x: FloatArray) -> float:
-        """Return the twisting moment M, in units of alpha / L."""
-        return self.gamma * 2 * math.pi * (self.link - self.writhe(x))
-
-    def energy(self, x: FloatArray) -> float:
-        """Return the twisting energy."""
-        return 0.5 * self.moment(x) ** 2 / self.gamma
-
     def columns(self, x: FloatArray) -> Mapping[str, float]:
         """Return what a table says of the twist of a loop."""
         return {
@@ -114,13 +148,13 @@ class Twist(OwnTerm):
         """Return whether strands meet: without thickness no twist is held beyond that."""
         return self.loop.strands_meet(x)
 
-    def force(self, x: FloatArray) -> FloatArray:
-        """Return -2 pi M dWr/dx (n, 3)."""
-        return -2 * math.pi * self.moment(x) * _slope(x)
+    def slope(self, x: FloatArray) -> FloatArray:
+        """Return dWr/dx (n, 3)."""
+        return -backward_differences(writhe_by_edges(differences(x), np.ones(len(x))))
 
     def hessian(self, x: FloatArray) -> FloatArray:
         """Return -2 pi M d2Wr/dx2 + 4 pi^2 gamma dWr/dx dWr/dx (3 n, 3 n)."""
-        slope = _slope(x).ravel()
+        slope = self.slope(x).ravel()
         matrix = np.outer(4 * math.pi**2 * self.gamma * slope, slope)
         blocks = matrix.reshape(len(x), 3, len(x), 3)
         factor = -2 * math.pi * self.moment(x)
@@ -144,14 +178,6 @@ class Twist(OwnTerm):
         gained = self.writhe(other) - self.writhe(x)
         return abs(gained - _gained(x, other)) <= _PASSED
 
-    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
-        """Return the derivative of the force (n, 3) by "link" or "twist_ratio"."""
-        if parameter == "link":
-            return -4 * math.pi**2 * self.gamma * _slope(x)
-        if parameter == "twist_ratio":
-            return self.force(x) / self.ratio
-        return None
-
 
 @dataclass(frozen=True)
 class PlaneTwist(Twist):
@@ -166,8 +192,8 @@ class PlaneTwist(Twist):
         """Return 0."""
         return 0.0
 
-    def force(self, x: FloatArray) -> FloatArray:
-        """Return no force (n, d)."""
+    def slope(self, x: FloatArray) -> FloatArray:
+        """Return no change of the writhe (n, d)."""
         return np.zeros_like(x)
 
     def hessian(self, x: FloatArray) -> FloatArray:
@@ -182,10 +208,6 @@ class PlaneTwist(Twist):
         """Return True."""
         return True
 
-    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
-        """Return no change of the force by "link" or "twist_ratio"."""
-        return np.zeros_like(x) if parameter in ("link", "twist_ratio") else None
-
 
 def polygon_writhe(x: FloatArray) -> float:
     """Return the writhe of a closed polygon x (n, 3), by all pairs of its edges."""
@@ -195,8 +217,3 @@ def polygon_writhe(x: FloatArray) -> float:
 def _gained(x: FloatArray, after: FloatArray) -> float:
     """Return by how much the writhe changes on a short way, modulo 2."""
     return tangent_area(differences(x), differences(after)) / (2 * math.pi)
-
-
-def _slope(x: FloatArray) -> FloatArray:
-    """Return dWr/dx (n, 3)."""
-    return -backward_differences(writhe_by_edges(differences(x), np.ones(len(x))))

@@ -28,7 +28,7 @@ from eulerplateau.exact.conformal import (
     writhe_hessian,
     writhe_modulo_two,
 )
-from eulerplateau.loop import EdgeTurns, Term, polygon_writhe
+from eulerplateau.loop import EdgeTurns, EvenTwist, Term, polygon_writhe
 
 # Loops that are kept: where a step begins, and where it may end.
 _KEPT = 4
@@ -159,7 +159,7 @@ class SmoothFilm(Term):
 
 
 @dataclass(frozen=True)
-class SmoothTwist(Term):
+class SmoothTwist(EvenTwist):
     """The twisting energy of a welded loop: see loop/twist.py, which has its formulas.
 
     Attributes
@@ -172,16 +172,6 @@ class SmoothTwist(Term):
     ratio: float
     link: float
 
-    @property
-    def gamma(self) -> float:
-        """C / alpha."""
-        return 2 * self.ratio
-
-    @property
-    def is_handed(self) -> bool:
-        """Whether a loop and its mirror image differ in energy: if it was turned."""
-        return self.link != 0.0
-
     def twist_energy(self, x: FloatArray) -> float:
         """Return the twisting energy: all of it."""
         return self.energy(x)
@@ -190,33 +180,12 @@ class SmoothTwist(Term):
         """Return Wr."""
         return self.unknowns.loop(x).writhe
 
-    def moment(self, x: FloatArray) -> float:
-        """Return the twisting moment M."""
-        return self.gamma * 2 * math.pi * (self.link - self.writhe(x))
-
-    def energy(self, x: FloatArray) -> float:
-        """Return the twisting energy."""
-        return 0.5 * self.gamma * (2 * math.pi * (self.link - self.writhe(x))) ** 2
-
-    def force(self, x: FloatArray) -> FloatArray:
-        """Return -2 pi M dWr/dx (size, 1)."""
-        return -2 * math.pi * self.moment(x) * self.slope(x)
-
     def hessian(self, x: FloatArray) -> FloatArray:
         """Return -2 pi M d2Wr/dx2 + 4 pi^2 gamma dWr/dx dWr/dx (size, size)."""
         u, slope = self.unknowns, self.slope(x)
         second = u.curvature(writhe_hessian(u.basis, u.loop(x).curve))
         stiff: FloatArray = 4 * math.pi**2 * self.gamma * slope @ slope.T
         return stiff - 2 * math.pi * self.moment(x) * second
-
-    def rate(self, parameter: str, x: FloatArray) -> FloatArray | None:
-        """Return the derivative of the force by "link" or "twist_ratio"."""
-        if parameter == "link":
-            return -4 * math.pi**2 * self.gamma * self.slope(x)
-        if parameter == "twist_ratio":
-            angle = 2 * math.pi * (self.link - self.writhe(x))
-            return -4 * math.pi * angle * self.slope(x)
-        return None
 
     def slope(self, x: FloatArray) -> FloatArray:
         """Return dWr/dx (size, 1)."""

@@ -23,12 +23,10 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.framed import FramedEnergy
 from eulerplateau.loop.frames import Frame
-from eulerplateau.loop.loop import Loop, differences
+from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.term import OwnTerm
-from eulerplateau.loop.writhe_kernels import tangent_area, writhe
+from eulerplateau.loop.twist import passes, polygon_writhe, writhe_gained
 
-# Two strands that pass through each other change the writhe by 2.
-_PASSED = 0.5
 # Loops whose frames are kept: where a step begins, and where it may end.
 _KEPT = 4
 # How far tangents may be apart for frames to be carried over.
@@ -81,9 +79,8 @@ class CurvedRod(OwnTerm):
 
     def reaches(self, x: FloatArray, other: FloatArray) -> bool:
         """Return whether the writhe changes by as much as it does locally."""
-        before, after = self._even(x).turns, self._even(other).turns
-        gained = tangent_area(differences(x), differences(other)) / (2 * math.pi)
-        return abs(before - after - gained) <= _PASSED
+        gained = polygon_writhe(other) - polygon_writhe(x)
+        return not passes(gained, writhe_gained(x, other))
 
     @property
     def slides(self) -> bool:
@@ -123,7 +120,7 @@ class CurvedRod(OwnTerm):
 
     def _even(self, x: FloatArray) -> Frame:
         """Return the frame of a loop whose twist is the same everywhere."""
-        return Frame.even(x, self.link - writhe(np.ascontiguousarray(x)))
+        return Frame.even(x, self.link - polygon_writhe(x))
 
     def _keep(self, *frames: Frame) -> None:
         """Keep frames in place of those that were known of the same loops."""
@@ -189,8 +186,7 @@ class CurvedRod(OwnTerm):
             frame = self.framed.at_rest(frame.carried(x + place * step))
             work += share * float(np.vdot(step, self.framed.force(frame)))
         even = self._even(x + step)
-        gained = tangent_area(differences(x), differences(even.x)) / (2 * math.pi)
-        if abs(before.turns - even.turns - gained) > _PASSED:
+        if passes(before.turns - even.turns, writhe_gained(x, even.x)):
             raise LinAlgError("a strand of the loop would pass through another")
         then = self.framed.settled(even, even.angles_to(frame))
         self._keep(then, before)

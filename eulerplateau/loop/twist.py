@@ -168,15 +168,14 @@ class Twist(EvenTwist, OwnTerm):
         where that is not the change of the writhe: a strand would pass through another.
         """
         after = x + step
-        gained = _gained(x, after)
-        if abs(self.writhe(after) - self.writhe(x) - gained) > _PASSED:
+        gained = writhe_gained(x, after)
+        if passes(self.writhe(after) - self.writhe(x), gained):
             raise LinAlgError("a strand of the loop would pass through another")
         return -math.pi * gained * (self.moment(x) + self.moment(after))
 
     def reaches(self, x: FloatArray, other: FloatArray) -> bool:
         """Return whether the writhe changes by as much as it does locally."""
-        gained = self.writhe(other) - self.writhe(x)
-        return abs(gained - _gained(x, other)) <= _PASSED
+        return not passes(self.writhe(other) - self.writhe(x), writhe_gained(x, other))
 
 
 @dataclass(frozen=True)
@@ -214,6 +213,11 @@ def polygon_writhe(x: FloatArray) -> float:
     return float(writhe(np.ascontiguousarray(x)))
 
 
-def _gained(x: FloatArray, after: FloatArray) -> float:
+def writhe_gained(x: FloatArray, after: FloatArray) -> float:
     """Return by how much the writhe changes on a short way, modulo 2."""
     return tangent_area(differences(x), differences(after)) / (2 * math.pi)
+
+
+def passes(gained: float, locally: float) -> bool:
+    """Return whether a strand has passed through another: the writhe gained more."""
+    return abs(gained - locally) > _PASSED

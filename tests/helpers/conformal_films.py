@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from math import copysign, pi
+from math import pi
 
 from eulerplateau.exact.conformal.basis import PLANAR, TWISTED, make_basis
 from eulerplateau.exact.conformal.branch import (
@@ -15,6 +15,7 @@ from eulerplateau.exact.conformal.branch import (
     switch,
 )
 from eulerplateau.exact.conformal.equilibrium import ConformalFilm, disk
+from eulerplateau.exact.conformal.lobes import first_lobes
 from eulerplateau.exact.conformal.second_variation import Mode, modes
 
 BUCKLING, SADDLE = 48 * pi**3, 96 * pi**3
@@ -22,10 +23,7 @@ BUCKLING, SADDLE = 48 * pi**3, 96 * pi**3
 
 @cache
 def _planar_at_1600() -> BranchPoint:
-    round_film = disk(make_basis(48, PLANAR, 0.1), BUCKLING)
-    mode = modes(round_film, PLANAR)[0]
-    tip = mode.basis.curve(mode.coefficients).x[0, 0]
-    return go_to_load(switch(round_film, mode, copysign(0.02, tip)), 1600.0)
+    return first_lobes(make_basis(48, PLANAR, 0.1))
 
 
 @cache

@@ -49,7 +49,11 @@ from .geometry import (
     waist as waist,
 )
 from .jets import Jet as Jet, dot as dot, variables as variables
-from .lobes import BUCKLING as BUCKLING, two_lobes as two_lobes
+from .lobes import (
+    BUCKLING as BUCKLING,
+    first_lobes as first_lobes,
+    two_lobes as two_lobes,
+)
 from .relaxation import relax as relax
 from .second_variation import (
     Mode as Mode,

@@ -9,7 +9,7 @@ import numpy as np
 
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.checks import finite
-from eulerplateau.exact.conformal.basis import PLANAR, make_basis
+from eulerplateau.exact.conformal.basis import PLANAR, Basis, make_basis
 from eulerplateau.exact.conformal.branch import (
     BranchError,
     BranchPoint,
@@ -55,10 +55,15 @@ def two_lobes(load: float) -> ConformalFilm:
 
 @lru_cache(maxsize=1)
 def _first() -> BranchPoint:
-    """Return the film at the first load."""
-    flat = disk(make_basis(_HARMONICS, PLANAR, _CROWDING), BUCKLING)
+    """Return the film at the first load, refined."""
+    return resolve(first_lobes(make_basis(_HARMONICS, PLANAR, _CROWDING)), _TAIL)
+
+
+def first_lobes(basis: Basis) -> BranchPoint:
+    """Return the film of two lobes at 1600 in a basis of PLANAR, from the disk."""
+    flat = disk(basis, BUCKLING)
     lowest = modes(flat, PLANAR)[0]
     # The lobes lie along x: the tip at phi = 0 moves outwards.
     tip = lowest.basis.curve(lowest.coefficients).x[0, 0]
     leaving = switch(flat, lowest, copysign(_SWITCHED, tip))
-    return resolve(go_to_load(leaving, _FIRST), _TAIL)
+    return go_to_load(leaving, _FIRST)

@@ -16,6 +16,7 @@ from eulerplateau.exact.conformal import (
     change_basis,
     disk,
     edge,
+    first_lobes,
     go_to_load,
     locate,
     make_basis,
@@ -57,11 +58,7 @@ class Row:
 
 def planar_start(harmonics: int, crowding: float) -> BranchPoint:
     """Return the planar two-lobed film at 1600, from the disk's bifurcation at 48 pi^3."""
-    round_film = disk(make_basis(harmonics, PLANAR, 0.1), PLANAR_BUCKLING)
-    lowest = modes(round_film, PLANAR)[0]
-    # The lobes lie along x: the tip at phi = 0 moves outwards.
-    x = lowest.basis.curve(lowest.coefficients).x
-    film = go_to_load(switch(round_film, lowest, float(np.copysign(0.02, x[0, 0]))), 1600.0)
+    film = first_lobes(make_basis(harmonics, PLANAR, 0.1))
     finer = change_basis(film, harmonics, crowding)
     if finer is None:
         raise ArithmeticError(f"{harmonics} harmonics do not resolve the film at 1600")

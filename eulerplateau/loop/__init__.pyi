@@ -6,6 +6,7 @@ from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
 from .frames import Frame as Frame, directors as directors
 from .free_bending import FreeBending as FreeBending
+from .held_gaps import HeldGaps as HeldGaps
 from .lengths import (
     Lengths as Lengths,
     Unconstrained as Unconstrained,
@@ -29,6 +30,7 @@ from .motions import (
     sliding as sliding,
 )
 from .rod import Rod as Rod
+from .strands import Gaps as Gaps, Strands as Strands, strands_of as strands_of
 from .term import LEAST as LEAST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,
@@ -40,5 +42,6 @@ from .twist import (
     EvenTwist as EvenTwist,
     PlaneTwist as PlaneTwist,
     Twist as Twist,
+    passed as passed,
     polygon_writhe as polygon_writhe,
 )

@@ -57,7 +57,7 @@ def minimise(
         return unusable
     limit = 500 if max_iterations is None else max_iterations
     try:
-        search = _search_for(problem.film)
+        search = _search_for(problem)
         found = search(problem, start, tensions, load, limit, observe)
     except np.linalg.LinAlgError:
         found = None  # a loop that has fallen onto a line has no tensions
@@ -67,9 +67,13 @@ def minimise(
     return problem.classified(replace(found, seconds=time.perf_counter() - started))
 
 
-def _search_for(film: Film) -> Search:
-    """Return the search that suits a film, its modules loaded now."""
-    match film:
+def _search_for(problem: Problem) -> Search:
+    """Return the search that suits a loop and its film, its modules loaded now."""
+    if problem.loop.diameter is not None:
+        from eulerplateau.solvers.contact.search import search
+
+        return search
+    match problem.film:
         case AreaFilm():
             from eulerplateau.solvers.soap import search
         case PlaneFilm():

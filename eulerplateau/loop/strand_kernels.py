@@ -1,0 +1,288 @@
+"""Where two strands of a smooth loop are closest, compiled. Arrays in, arrays out.
+
+A loop gamma is a periodic piecewise cubic: `pieces` (n, 4, d) of its edges, the cube's
+coefficient first, in s less the edge's first of `knots` (n + 1,). With r = gamma(s) -
+gamma(t) what is least is f = r.r / 2, whose derivatives are r.gamma'(s), -r.gamma'(t) and
+
+    f_ss = gamma'(s)^2 + r.gamma''(s),  f_tt = gamma'(t)^2 - r.gamma''(t),
+    f_st = -gamma'(s).gamma'(t).
+
+Helpers stay in this file (numba #1833).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from eulerplateau.arrays import FloatArray
+
+# Newton's steps from a guess, the last one's length in parts of the loop, and by how much
+# the second derivative has to be positive.
+_STEPS = 60
+_SETTLED = 1e-14
+_CURVED = 1e-10
+# An edge's curve leaves its chord by a fraction of its length.
+_SLACK = 1.2
+# How much nearer chords may be than their curves are, in squared edges.
+_SAGGING = 3.0
+# Minima nearer to each other, in parts of the loop, are the same.
+_SAME = 1e-7
+
+
+@njit(cache=True)
+def place(pieces: FloatArray, knots: FloatArray, s: float, out: FloatArray) -> None:
+    """Write gamma, gamma', gamma'' at s to `out` (3, d); s is taken round the loop."""
+    n, d = knots.shape[0] - 1, pieces.shape[2]
+    whole = knots[n]
+    s = s - whole * np.floor(s / whole)
+    e = min(max(np.searchsorted(knots, s, side="right") - 1, 0), n - 1)
+    u = s - knots[e]
+    for k in range(d):
+        a, b, c = pieces[e, 0, k], pieces[e, 1, k], pieces[e, 2, k]
+        out[0, k] = ((a * u + b) * u + c) * u + pieces[e, 3, k]
+        out[1, k] = (3.0 * a * u + 2.0 * b) * u + c
+        out[2, k] = 6.0 * a * u + 2.0 * b
+
+
+@njit(cache=True)
+def _derivatives(
+    p: FloatArray, q: FloatArray
+) -> tuple[float, float, float, float, float, float]:
+    """Return f, f_s, f_t, f_ss, f_st, f_tt of what `place` says of two places."""
+    f, fs, ft, fss, fst, ftt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(p.shape[1]):
+        r = p[0, k] - q[0, k]
+        f += 0.5 * r * r
+        fs += r * p[1, k]
+        ft -= r * q[1, k]
+        fss += p[1, k] * p[1, k] + r * p[2, k]
+        fst -= p[1, k] * q[1, k]
+        ftt += q[1, k] * q[1, k] - r * q[2, k]
+    return f, fs, ft, fss, fst, ftt
+
+
+@njit(cache=True)
+def settle(
+    pieces: FloatArray, knots: FloatArray, s: float, t: float, slides: bool
+) -> tuple[float, float, float, float]:
+    """Return where the distance is least near (s, t), it, and how it grows from there.
+
+    Newton's method, its steps at most an edge long and downhill; s stays where it is unless
+    it `slides`. What grows is D(s), the least distance by t: returned is d2D/ds2.
+    """
+    n, d = knots.shape[0] - 1, pieces.shape[2]
+    p, q = np.empty((3, d)), np.empty((3, d))
+    longest = 2.0 * knots[n] / n
+    place(pieces, knots, s, p)
+    place(pieces, knots, t, q)
+    f, fs, ft, fss, fst, ftt = _derivatives(p, q)
+    for _ in range(_STEPS):
+        least = _CURVED * (abs(fss) + abs(ftt))
+        if slides:
+            determinant = fss * ftt - fst * fst
+            lift = 0.0
+            if determinant < least * (fss + ftt) or fss + ftt <= 0.0:
+                middle = 0.5 * (fss + ftt)
+                lowest = middle - np.sqrt(0.25 * (fss - ftt) ** 2 + fst * fst)
+                lift = max(least, least - lowest)
+            a, b = fss + lift, ftt + lift
+            determinant = a * b - fst * fst
+            ds, dt = -(b * fs - fst * ft) / determinant, -(a * ft - fst * fs) / determinant
+        else:
+            ds, dt = 0.0, -ft / max(ftt, abs(ftt), least)
+        size = max(abs(ds), abs(dt))
+        if size > longest:
+            ds, dt = ds * longest / size, dt * longest / size
+        if size < _SETTLED * knots[n]:
+            s, t = s + ds, t + dt
+            break
+        falling = False
+        for _ in range(30):
+            place(pieces, knots, s + ds, p)
+            place(pieces, knots, t + dt, q)
+            after = _derivatives(p, q)[0]
+            if after < f:
+                falling = True
+                break
+            if size < 1e-9 * knots[n]:
+                break
+            ds, dt, size = 0.5 * ds, 0.5 * dt, 0.5 * size
+        s, t = (s + ds, t + dt) if falling or size < 1e-9 * knots[n] else (s, t)
+        place(pieces, knots, s, p)
+        place(pieces, knots, t, q)
+        f, fs, ft, fss, fst, ftt = _derivatives(p, q)
+        if not falling:
+            break
+    place(pieces, knots, s, p)
+    place(pieces, knots, t, q)
+    f, fs, ft, fss, fst, ftt = _derivatives(p, q)
+    distance = np.sqrt(2.0 * f)
+    if distance == 0.0 or ftt <= 0.0:
+        return s, t, distance, -np.inf
+    return s, t, distance, (fss - fst * fst / ftt) / distance
+
+
+@njit(cache=True)
+def _apart(s: float, t: float, whole: float) -> float:
+    """Return the length of loop between two places, the shorter way."""
+    along = abs(s - t) % whole
+    return min(along, whole - along)
+
+
+@njit(cache=True)
+def _closest_on_chords(x: FloatArray, i: int, j: int) -> tuple[float, float, float]:
+    """Return where the chords i and j are closest, in parts of each, and the distance."""
+    n = x.shape[0]
+    i, j = i % n, j % n
+    i1, j1 = (i + 1) % n, (j + 1) % n
+    uu, uv, vv, uw, vw, ww = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(x.shape[1]):
+        u, v, w = x[i1, k] - x[i, k], x[j1, k] - x[j, k], x[i, k] - x[j, k]
+        uu, uv, vv = uu + u * u, uv + u * v, vv + v * v
+        uw, vw, ww = uw + u * w, vw + v * w, ww + w * w
+    determinant = uu * vv - uv * uv
+    a = 0.5
+    if determinant > 1e-12 * uu * vv:
+        a = min(max((uv * vw - vv * uw) / determinant, 0.0), 1.0)
+    b = min(max((uv * a + vw) / vv, 0.0), 1.0)
+    a = min(max((uv * b - uw) / uu, 0.0), 1.0)
+    square = ww + 2 * a * uw - 2 * b * vw + a * a * uu - 2 * a * b * uv + b * b * vv
+    return a, b, np.sqrt(max(square, 0.0))
+
+
+@njit(cache=True)
+def _nearest_nearby(x: FloatArray, i: int, j: int, distance: float, most: float) -> bool:
+    """Whether no pair of edges next to i and j is nearer than that by more than `most`."""
+    for k in range(-1, 2, 2):
+        if _closest_on_chords(x, i + k, j)[2] < distance - most:
+            return False
+        if _closest_on_chords(x, i, j + k)[2] < distance - most:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _near_chords(x: FloatArray, i: int, j: int, reach: float, slack: float) -> bool:
+    """Whether the edges i and j may come within reach: by their middles."""
+    n = x.shape[0]
+    i1, j1 = (i + 1) % n, (j + 1) % n
+    square, first, second = 0.0, 0.0, 0.0
+    for k in range(x.shape[1]):
+        square += 0.25 * (x[i, k] + x[i1, k] - x[j, k] - x[j1, k]) ** 2
+        first += (x[i1, k] - x[i, k]) ** 2
+        second += (x[j1, k] - x[j, k]) ** 2
+    return square < (reach + 0.5 * slack * (np.sqrt(first) + np.sqrt(second))) ** 2
+
+
+@njit(cache=True)
+def _nearest_on_chord(x: FloatArray, i: int, j: int) -> float:
+    """Return where the line of chord j is nearest to vertex i, in parts of the chord."""
+    j1 = (j + 1) % x.shape[0]
+    along, square = 0.0, 0.0
+    for k in range(x.shape[1]):
+        v = x[j1, k] - x[j, k]
+        along += v * (x[i, k] - x[j, k])
+        square += v * v
+    return along / square
+
+
+@njit(cache=True)
+def nearest_pairs(
+    x: FloatArray, pieces: FloatArray, knots: FloatArray, reach: float, apart: float
+) -> FloatArray:
+    """Return the local minima of the distance below reach: rows s, t, D, d2D/ds2; s < t.
+
+    Of places at least `apart` from each other along the loop. x : (n, d), the vertices; all
+    pairs of edges are looked at.
+    """
+    n = x.shape[0]
+    whole = knots[n]
+    most = _SAGGING * (whole / n) ** 2 / whole
+    found = np.empty((16, 4))
+    count = 0
+    for i in range(n):
+        for j in range(i + 2, n):
+            behind = knots[j + 1] - knots[i]
+            if behind < apart or whole - (knots[j] - knots[i + 1]) < apart:
+                continue
+            if not _near_chords(x, i, j, reach, _SLACK):
+                continue
+            a, b, distance = _closest_on_chords(x, i, j)
+            if not _nearest_nearby(x, i, j, distance, most):
+                continue
+            s = knots[i] + a * (knots[i + 1] - knots[i])
+            t = knots[j] + b * (knots[j + 1] - knots[j])
+            s, t, distance, grows = settle(pieces, knots, s, t, True)
+            if not distance < reach or _apart(s, t, whole) < apart:
+                continue
+            s, t = s - whole * np.floor(s / whole), t - whole * np.floor(t / whole)
+            s, t = min(s, t), max(s, t)
+            known = False
+            for m in range(count):
+                off = max(_apart(s, found[m, 0], whole), _apart(t, found[m, 1], whole))
+                known = known or off < _SAME * whole
+            if known:
+                continue
+            if count == found.shape[0]:
+                found = np.concatenate((found, np.empty((count, 4))))
+            found[count, 0], found[count, 1] = s, t
+            found[count, 2], found[count, 3] = distance, grows
+            count += 1
+    return found[:count].copy()
+
+
+@njit(cache=True)
+def nearest_to_vertices(
+    x: FloatArray, pieces: FloatArray, knots: FloatArray, reach: float, apart: float
+) -> FloatArray:
+    """Return where strands ahead are closest to vertices: rows s, t, D, d2D/ds2, other.
+
+    s is a vertex's, t > s, D below reach; `other` is d2D/ds2 where the distance is least by
+    both, near by; -inf where that is nearer along the loop than `apart`.
+    """
+    n = x.shape[0]
+    whole = knots[n]
+    found = np.empty((16, 5))
+    count = 0
+    for i in range(n):
+        first = count
+        for j in range(i + 1, n):
+            behind = knots[j + 1] - knots[i]
+            if behind < apart or whole - (knots[j] - knots[i]) < apart:
+                continue
+            if not _near_chords(x, i, j, reach, 2.0 * _SLACK):
+                continue
+            b = _nearest_on_chord(x, i, j)
+            if b < -_SLACK or b > 1.0 + _SLACK:
+                continue
+            t = knots[j] + b * (knots[j + 1] - knots[j])
+            s, t, distance, grows = settle(pieces, knots, knots[i], t, False)
+            t = t - whole * np.floor(t / whole)
+            if not distance < reach or _apart(s, t, whole) < apart or t < s:
+                continue
+            known = False
+            for m in range(first, count):
+                known = known or _apart(t, found[m, 1], whole) < _SAME * whole
+            if known:
+                continue
+            a, b, _, other = settle(pieces, knots, s, t, True)
+            if count == found.shape[0]:
+                found = np.concatenate((found, np.empty((count, 5))))
+            found[count, 0], found[count, 1] = s, t
+            found[count, 2], found[count, 3] = distance, grows
+            found[count, 4] = other if _apart(a, b, whole) >= apart else -np.inf
+            count += 1
+    return found[:count].copy()
+
+
+@njit(cache=True)
+def settle_each(
+    pieces: FloatArray, knots: FloatArray, s: FloatArray, t: FloatArray, slides: FloatArray
+) -> FloatArray:
+    """Return `settle` of each of k pairs: rows s, t, D, d2D/ds2 (k, 4)."""
+    found = np.empty((s.shape[0], 4))
+    for k in range(s.shape[0]):
+        a, b, distance, grows = settle(pieces, knots, s[k], t[k], slides[k])
+        found[k, 0], found[k, 1], found[k, 2], found[k, 3] = a, b, distance, grows
+    return found

@@ -1,0 +1,265 @@
+"""How far apart the strands of a loop with a thickness are, and how that changes.
+
+Distances are those of the smooth curve through the loop's vertices, the periodic cubic
+spline in rest arclength, gamma(s; x) = sum_v phi_v(s) x_v: linear in x, as rest lengths are
+fixed. A gap is D - d, d the diameter and D a least distance |gamma(s) - gamma(t)|,
+
+- by s and t, where two strands touch at a point: d2D/ds2 is positive there, D taken as
+  least by t at each s;
+- by t alone, s being a vertex's, along strands that lie beside each other, where d2D/ds2 is
+  nearly 0, and least by s too means nothing.
+
+The arclengths are eliminated: with r = gamma(s) - gamma(t), n = r / D and a = phi(s) -
+phi(t) it is dD/dx_v = a_v n, and the second derivative is that at fixed arclengths,
+a a^T (I - n n^T) / D, less M K^-1 M^T, K the second derivative of D by the arclengths that
+are free and M the mixed one. Strands nearer along the loop than pi d / 2 do not touch where
+the curvature is below 2 / d.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import pi
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.linalg import LinAlgError
+
+from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.strand_kernels import (
+    nearest_pairs,
+    nearest_to_vertices,
+    settle_each,
+)
+
+# Strands touch at a point where they part at least so fast, d2D/ds2 in units of 1 / L:
+# a loop's curvature is 2 pi. One that touches at a point does so until half of that.
+_PARTING = 2.0
+_STAYS = 0.5
+# Parts of an edge within which two gaps are the same, or depend on each other.
+_BESIDE = 0.75
+# By how many edges the places of a gap may move while it is followed.
+_FOLLOWED = 5.0
+# What closes a gap is spread over so much of the loop: over an edge it would be a kink.
+_SPREAD = 0.03
+
+
+@dataclass(frozen=True)
+class Gaps:
+    """Places where strands of a loop are near: k of them, at arclengths s and t.
+
+    Attributes
+    ----------
+    s, t : (k,) float
+    slides : (k,) bool, whether D is least by s too
+    """
+
+    s: FloatArray
+    t: FloatArray
+    slides: BoolArray
+
+    def __len__(self) -> int:
+        """Return k."""
+        return len(self.s)
+
+    def __getitem__(self, chosen: BoolArray) -> Gaps:
+        """Return those of them that are chosen (k,)."""
+        return Gaps(self.s[chosen], self.t[chosen], self.slides[chosen])
+
+    def joined(self, other: Gaps) -> Gaps:
+        """Return these and others behind them."""
+        parts = [(self.s, other.s), (self.t, other.t), (self.slides, other.slides)]
+        return Gaps(*(np.concatenate(pair) for pair in parts))
+
+
+NO_GAPS = Gaps(np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool))
+
+
+@dataclass(frozen=True)
+class _Between:
+    """What is known between the places of k gaps.
+
+    Attributes
+    ----------
+    weights : (k, n) float, a = phi(s) - phi(t)
+    slopes : (2, k, n) float, phi'(s) and -phi'(t)
+    normals : (k, d) float, from t to s
+    distances : (k,) float, D
+    along : (2, k, d) float, gamma'(s) and -gamma'(t)
+    bends : (2, k) float, n . gamma''(s) and -n . gamma''(t)
+    """
+
+    weights: FloatArray
+    slopes: FloatArray
+    normals: FloatArray
+    distances: FloatArray
+    along: FloatArray
+    bends: FloatArray
+
+
+@dataclass(frozen=True)
+class Strands:
+    """The strands of a loop that is `diameter` thick, as functions of its vertices x (n, d).
+
+    Gaps are in units of L; negative where strands overlap. Places that may touch are more
+    than `apart` from each other along the loop.
+    """
+
+    loop: Loop
+    diameter: float
+    apart: float
+
+    @cached_property
+    def knots(self) -> FloatArray:
+        """Where along the loop the vertices are (n + 1,), the first again at its end."""
+        return np.concatenate([[0.0], np.cumsum(self.loop.rest_lengths)])
+
+    @cached_property
+    def _basis(self) -> CubicSpline:
+        """The functions phi_v, as a function of s with values (n,)."""
+        unit = np.eye(len(self.loop.rest_lengths))
+        return CubicSpline(self.knots, np.vstack([unit, unit[:1]]), bc_type="periodic")
+
+    @cached_property
+    def compliance(self) -> FloatArray:
+        """The inverse (n, n) of the norm <s> |dx|^2 + l^4 |dx''|^2 in which gaps close."""
+        loop = self.loop
+        norm = np.diag(loop.mean_lengths) + _SPREAD**4 * loop.bending_matrix
+        return np.linalg.inv(norm).astype(np.float64, copy=False)
+
+    def curve(self, x: FloatArray) -> CubicSpline:
+        """Return the smooth curve through vertices x (n, d)."""
+        return CubicSpline(self.knots, np.vstack([x, x[:1]]), bc_type="periodic")
+
+    def _pieces(self, x: FloatArray) -> FloatArray:
+        """Return the curve's cubics (n, 4, d): a spline made anew costs ten times more."""
+        pieces: FloatArray = (self._cubics @ x).reshape(len(x), 4, -1)
+        return pieces
+
+    @cached_property
+    def _cubics(self) -> FloatArray:
+        """The cubics of the functions phi_v (4 n, n), edge by edge."""
+        n = len(self.loop.rest_lengths)
+        return np.ascontiguousarray(self._basis.c.transpose(1, 0, 2)).reshape(4 * n, n)
+
+    def near(self, x: FloatArray, reach: float) -> tuple[Gaps, FloatArray]:
+        """Return the places whose gap is below reach, and the gaps (k,).
+
+        They are all there are: found by looking at all pairs of edges.
+        """
+        x = np.ascontiguousarray(x)
+        pieces, within = self._pieces(x), self.diameter + reach
+        pairs = nearest_pairs(x, pieces, self.knots, within, self.apart)
+        pairs = pairs[pairs[:, 3] >= _PARTING]
+        beside = nearest_to_vertices(x, pieces, self.knots, within, self.apart)
+        other = beside[:, 4]
+        beside = beside[(other < _PARTING) & (other > -np.inf)]
+        rows = np.vstack([pairs, beside[:, :4]])
+        slides = np.arange(len(rows)) < len(pairs)
+        return Gaps(rows[:, 0], rows[:, 1], slides), rows[:, 2] - self.diameter
+
+    def unlike(self, gaps: Gaps, others: Gaps) -> BoolArray:
+        """Return which of `gaps` (k,) are not beside any of others, on both strands."""
+        reach = _BESIDE * self.loop.rest_lengths.max()
+        ends = (gaps.s, others.s), (gaps.t, others.t)
+        off = [np.abs(one[:, None] - other) for one, other in ends]
+        whole = self.knots[-1]
+        near = [np.minimum(each, whole - each) < reach for each in off]
+        unlike: BoolArray = ~(near[0] & near[1]).any(axis=1)
+        return unlike
+
+    def ill_chosen(self, x: FloatArray, gaps: Gaps) -> BoolArray:
+        """Return which gaps (k,) are of the other kind by now: at a point, or beside."""
+        slides = np.ones(len(gaps), dtype=bool)
+        _, grows = self._followed(self._pieces(x), replace(gaps, slides=slides))
+        return np.where(gaps.slides, grows < _STAYS * _PARTING, grows >= _PARTING)
+
+    def at(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
+        """Return gaps followed to a loop x (n, d), and how wide they are (k,).
+
+        Raises LinAlgError where one is lost: the loop has moved too far.
+        """
+        rows, _ = self._followed(self._pieces(x), gaps)
+        off = np.maximum(np.abs(rows[:, 0] - gaps.s), np.abs(rows[:, 1] - gaps.t))
+        if len(gaps) and float(off.max()) > _FOLLOWED * self.loop.rest_lengths.max():
+            raise LinAlgError("a contact has moved too far to be followed")
+        return replace(gaps, s=rows[:, 0], t=rows[:, 1]), rows[:, 2] - self.diameter
+
+    def _followed(self, pieces: FloatArray, gaps: Gaps) -> tuple[FloatArray, FloatArray]:
+        rows = settle_each(pieces, self.knots, gaps.s, gaps.t, gaps.slides)
+        return rows[:, :3], rows[:, 3]
+
+    def _between(self, x: FloatArray, gaps: Gaps) -> _Between:
+        """Return what is known between places that are settled at x (n, d)."""
+        whole = self.knots[-1]
+        s, t = gaps.s % whole, gaps.t % whole
+        weights = self._basis(s) - self._basis(t)
+        slopes = np.stack([self._basis(s, 1), -self._basis(t, 1)])
+        curved = np.stack([self._basis(s, 2), -self._basis(t, 2)])
+        across = weights @ x
+        distances = np.linalg.norm(across, axis=1)
+        normals = across / distances[:, None]
+        bends = np.einsum("ekn,nd,kd->ek", curved, x, normals, optimize=True)
+        return _Between(weights, slopes, normals, distances, slopes @ x, bends)
+
+    def jacobian(self, x: FloatArray, gaps: Gaps) -> FloatArray:
+        """Return how settled gaps change with the vertices (k, d n)."""
+        found = self._between(x, gaps)
+        rows: FloatArray = found.weights[:, :, None] * found.normals[:, None, :]
+        return rows.reshape(len(gaps), x.size)
+
+    def hessian(self, x: FloatArray, gaps: Gaps, shares: FloatArray) -> FloatArray:
+        """Return the second derivative (d n, d n) of shares (k,) times settled gaps."""
+        n, d = x.shape
+        total = np.zeros((n, d, n, d))
+        if not len(gaps):
+            return total.reshape(n * d, n * d)
+        found = self._between(x, gaps)
+        a, normals = found.weights, found.normals
+        across = np.eye(d) - normals[:, :, None] * normals[:, None, :]
+        across *= (shares / found.distances)[:, None, None]
+        for each, block in zip(a, across, strict=True):
+            total += np.multiply.outer(np.multiply.outer(each, block), each).transpose(
+                0, 1, 3, 2
+            )
+        mixed, inverse = self._eliminated(found, gaps.slides, x.size)
+        columns = np.einsum("k,kef,kfi->kei", shares, inverse, mixed)
+        whole: FloatArray = total.reshape(n * d, n * d)
+        flat = mixed.reshape(-1, x.size)
+        whole -= flat.T @ columns.reshape(-1, x.size)
+        return whole
+
+    def _eliminated(
+        self, found: _Between, slides: BoolArray, size: int
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return M (k, 2, d n) and K^-1 (k, 2, 2), rows and columns of 0 where s is held."""
+        along, normals, distances = found.along, found.normals, found.distances
+        flat = along - (along * normals).sum(axis=2)[:, :, None] * normals
+        flat /= distances[:, None]
+        mixed = found.slopes[..., None] * normals[:, None, :]
+        mixed = mixed + found.weights[:, :, None] * flat[:, :, None, :]
+        curved = np.einsum("eki,fki->kef", along, flat)
+        curved[:, 0, 0] += found.bends[0]
+        curved[:, 1, 1] += found.bends[1]
+        inverse = np.zeros_like(curved)
+        if slides.any():
+            inverse[slides] = np.linalg.inv(curved[slides])
+        inverse[~slides, 1, 1] = 1 / curved[~slides, 1, 1]
+        return mixed.reshape(2, -1, size).transpose(1, 0, 2), inverse
+
+    def angles(self, x: FloatArray, gaps: Gaps) -> FloatArray:
+        """Return the acute angle between the strands' tangents at settled gaps, degrees."""
+        along = self._between(x, gaps).along
+        unit = along / np.linalg.norm(along, axis=2)[:, :, None]
+        cosine = np.abs((unit[0] * unit[1]).sum(axis=1))
+        sine = np.linalg.norm(unit[0] - np.sign((unit[0] * unit[1]).sum(axis=1))[:, None] * unit[1], axis=1)
+        half: FloatArray = np.degrees(2 * np.arctan2(0.5 * sine, np.sqrt(0.5 * (1 + cosine))))
+        return half
+
+
+def strands_of(loop: Loop) -> Strands:
+    """Return the strands of a loop that has a diameter."""
+    assert loop.diameter is not None
+    return Strands(loop, loop.diameter, 0.5 * pi * loop.diameter)

@@ -1,0 +1,79 @@
+"""Where strands of a loop touch, and how they push each other: what is said of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.film import FilmOfLoop
+from eulerplateau.loop import Strands
+from eulerplateau.solvers.contact.descent import Touching
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """The contacts of a loop: k of them, lengths in units of L, forces in alpha / L^2.
+
+    Attributes
+    ----------
+    s, t : (k,) float
+        Where along the loop, from its first vertex.
+    points : (2, k, 3) float, the same two places in space, on the centrelines
+    forces : (k,) float, with which the strands push each other; the energy's slope in d
+    gaps : (k,) float, the distance less the diameter
+    angles : (k,) float, the acute angle between the strands' tangents, degrees
+    at_a_point : (k,) bool
+        Whether strands cross there; else they lie beside each other, and it is one vertex.
+    uncertain : float, what a force can be off by
+    pushes : (n_b, 3) float, what the contacts add to the energy's gradient
+    smallest_gap : float, of all places, touching or not; infinite beyond half the diameter
+    """
+
+    s: FloatArray
+    t: FloatArray
+    points: FloatArray
+    forces: FloatArray
+    gaps: FloatArray
+    angles: FloatArray
+    at_a_point: BoolArray
+    uncertain: float
+    pushes: FloatArray
+    smallest_gap: float
+
+    def __len__(self) -> int:
+        """Return k."""
+        return len(self.s)
+
+    @property
+    def force(self) -> float:
+        """The sum of the forces: dE/dd."""
+        return float(self.forces.sum())
+
+    @property
+    def doubtful(self) -> BoolArray:
+        """Which of the forces (k,) cannot be told from none."""
+        return self.forces <= self.uncertain
+
+
+def contacts_of(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
+    """Return the contacts of a loop that a descent has come to."""
+    x, gaps = state.model.x, state.gaps
+    curve = strands.curve(x)
+    places = np.stack([curve(gaps.s), curve(gaps.t)])
+    _, widths = strands.at(x, gaps)
+    _, near = strands.near(x, 0.5 * strands.diameter)
+    pushes = -state.forces @ strands.jacobian(x, gaps)
+    return Contacts(
+        s=gaps.s,
+        t=gaps.t,
+        points=np.stack([film.lift(each) for each in places]),
+        forces=state.forces,
+        gaps=widths,
+        angles=strands.angles(x, gaps),
+        at_a_point=gaps.slides,
+        uncertain=state.uncertain,
+        pushes=film.lift(pushes.reshape(x.shape)),
+        smallest_gap=float(near.min(initial=np.inf)),
+    )

@@ -1,0 +1,97 @@
+"""Newton for a loop with a diameter, whatever film it bounds: down to where strands touch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from scipy.linalg import LinAlgError
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film import FilmOfLoop
+from eulerplateau.loop import LoopEnergy, close_with_lengths, strands_of
+from eulerplateau.mesh import Shape
+from eulerplateau.solvers.contact.contacts import contacts_of
+from eulerplateau.solvers.contact.descent import ContactDescent, Touching
+from eulerplateau.solvers.contact.separation import separated
+from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
+from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers.second_variation import TangentModel, stability
+from eulerplateau.threads import one_thread
+
+# A soap film is sought near the last shape at most so many times in one solve.
+_SHAPES = 60
+# The residual at which a film that has tilted from where it was made is made anew.
+_CLOSE = 1e-5
+
+
+def search(
+    problem: Problem,
+    start: Shape,
+    tensions: FloatArray | None,
+    load: float,
+    max_iterations: int,
+    observe: Callable[[FloatArray], None],
+) -> Equilibrium | None:
+    """Return what a film comes to; None if no loop without overlaps is near the start.
+
+    Tensions are of no use: they follow from the loop.
+    """
+    strands = strands_of(problem.loop)
+    film = problem.film.of_loop(start)
+    x_loop = close_with_lengths(problem.loop, film.project(start.x_loop))
+    if x_loop is None:
+        return None
+    x_loop = separated(strands, x_loop)
+    if x_loop is None:
+        return None
+    spent, found = 0, None
+    shape = start
+    with one_thread():
+        for _ in range(_SHAPES):
+            try:
+                carried = problem.film.carried(shape, film.lift(x_loop))
+                film = problem.film.of_loop(problem.film.prepared(carried))
+                energy = film.energy(problem.loop, load)
+                ends = partial(_elsewhere, film)
+                descent = ContactDescent(
+                    energy, strands, max_iterations - spent, observe, ends
+                )
+                state, status = descent.run(x_loop)
+            except LinAlgError:
+                return None if found is None else found(Status.STALLED)
+            spent += state.iteration
+            x_loop = state.model.x
+            shape = film.shape(x_loop)
+            found = partial(_record, problem, load, film, shape, state, spent)
+            own = energy.holds(x_loop) and film.made_at(x_loop)
+            if own or status is Status.STALLED or spent >= max_iterations:
+                return found(status)
+    return None if found is None else found(status)
+
+
+def _elsewhere(film: FilmOfLoop, model: TangentModel) -> bool:
+    """Return whether a film nearly at rest is not where it was made: it is made anew."""
+    return model.residual < _CLOSE and not film.made_at(model.x)
+
+
+def _record(
+    problem: Problem,
+    load: float,
+    film: FilmOfLoop,
+    shape: Shape,
+    state: Touching,
+    spent: int,
+    status: Status,
+) -> Equilibrium:
+    contacts = contacts_of(strands_of(problem.loop), film, state)
+    tensions = state.model.tensions[: len(state.model.x)]
+    found = problem.equilibrium(shape, tensions, load, status)
+    found = replace(
+        found,
+        iterations=spent,
+        contacts=contacts,
+        residual=problem.residual(shape, tensions, load, contacts.pushes),
+    )
+    return with_stability(found, stability(state.model))

@@ -30,7 +30,12 @@ from .motions import (
     sliding as sliding,
 )
 from .rod import Rod as Rod
-from .strands import Gaps as Gaps, Strands as Strands, strands_of as strands_of
+from .strands import (
+    NO_GAPS as NO_GAPS,
+    Gaps as Gaps,
+    Strands as Strands,
+    strands_of as strands_of,
+)
 from .term import LEAST as LEAST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,

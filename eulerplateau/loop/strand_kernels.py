@@ -176,13 +176,13 @@ def _near_chords(x: FloatArray, i: int, j: int, reach: float, slack: float) -> b
 
 
 @njit(cache=True)
-def _nearest_on_chord(x: FloatArray, i: int, j: int) -> float:
-    """Return where the line of chord j is nearest to vertex i, in parts of the chord."""
+def _nearest_on_chord(x: FloatArray, point: FloatArray, j: int) -> float:
+    """Return where the line of chord j is nearest to a point (d,), in parts of the chord."""
     j1 = (j + 1) % x.shape[0]
     along, square = 0.0, 0.0
     for k in range(x.shape[1]):
         v = x[j1, k] - x[j, k]
-        along += v * (x[i, k] - x[j, k])
+        along += v * (point[k] - x[j, k])
         square += v * v
     return along / square
 
@@ -233,31 +233,37 @@ def nearest_pairs(
 
 
 @njit(cache=True)
-def nearest_to_vertices(
-    x: FloatArray, pieces: FloatArray, knots: FloatArray, reach: float, apart: float
+def nearest_to_places(
+    x: FloatArray,
+    pieces: FloatArray,
+    knots: FloatArray,
+    offset: float,
+    reach: float,
+    apart: float,
 ) -> FloatArray:
-    """Return where strands ahead are closest to vertices: rows s, t, D, d2D/ds2, other.
+    """Return where strands ahead are closest to places: rows s, t, D, s', t', d2D/ds2.
 
-    s is a vertex's, t > s, D below reach; `other` is d2D/ds2 where the distance is least by
-    both, near by; -inf where that is nearer along the loop than `apart`.
+    There is a place s on every edge, in parts of it at `offset`; t > s, D below reach. At
+    (s', t') near by the distance is least by both; d2D/ds2 is what it is there.
     """
-    n = x.shape[0]
+    n, d = x.shape
     whole = knots[n]
-    found = np.empty((16, 5))
+    found, here = np.empty((16, 6)), np.empty((3, d))
     count = 0
     for i in range(n):
-        first = count
+        first, start = count, knots[i] + offset * (knots[i + 1] - knots[i])
+        place(pieces, knots, start, here)
         for j in range(i + 1, n):
             behind = knots[j + 1] - knots[i]
-            if behind < apart or whole - (knots[j] - knots[i]) < apart:
+            if behind < apart or whole - (knots[j] - knots[i + 1]) < apart:
                 continue
             if not _near_chords(x, i, j, reach, 2.0 * _SLACK):
                 continue
-            b = _nearest_on_chord(x, i, j)
+            b = _nearest_on_chord(x, here[0], j)
             if b < -_SLACK or b > 1.0 + _SLACK:
                 continue
-            t = knots[j] + b * (knots[j + 1] - knots[j])
-            s, t, distance, grows = settle(pieces, knots, knots[i], t, False)
+            guess = knots[j] + b * (knots[j + 1] - knots[j])
+            s, t, distance, _ = settle(pieces, knots, start, guess, False)
             t = t - whole * np.floor(t / whole)
             if not distance < reach or _apart(s, t, whole) < apart or t < s:
                 continue
@@ -266,12 +272,13 @@ def nearest_to_vertices(
                 known = known or _apart(t, found[m, 1], whole) < _SAME * whole
             if known:
                 continue
-            a, b, _, other = settle(pieces, knots, s, t, True)
             if count == found.shape[0]:
-                found = np.concatenate((found, np.empty((count, 5))))
-            found[count, 0], found[count, 1] = s, t
-            found[count, 2], found[count, 3] = distance, grows
-            found[count, 4] = other if _apart(a, b, whole) >= apart else -np.inf
+                found = np.concatenate((found, np.empty((count, 6))))
+            found[count, 0], found[count, 1], found[count, 2] = s, t, distance
+            s, t, _, grows = settle(pieces, knots, s, t, True)
+            found[count, 3], found[count, 4], found[count, 5] = s, t, grows
+            if _apart(s, t, whole) < apart:
+                found[count, 5] = -np.inf
             count += 1
     return found[:count].copy()
 

@@ -30,7 +30,7 @@ from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.strand_kernels import (
     nearest_pairs,
-    nearest_to_vertices,
+    nearest_to_places,
     settle_each,
 )
 
@@ -40,6 +40,8 @@ _PARTING = 2.0
 _STAYS = 0.5
 # Parts of an edge within which two gaps are the same, or depend on each other.
 _BESIDE = 0.75
+# Edges within which strands that lie along each other do so.
+_ALONG = 2.5
 # By how many edges the places of a gap may move while it is followed.
 _FOLLOWED = 5.0
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
@@ -144,25 +146,41 @@ class Strands:
         n = len(self.loop.rest_lengths)
         return np.ascontiguousarray(self._basis.c.transpose(1, 0, 2)).reshape(4 * n, n)
 
-    def near(self, x: FloatArray, reach: float) -> tuple[Gaps, FloatArray]:
+    def near(
+        self, x: FloatArray, reach: float, beside: Gaps = NO_GAPS
+    ) -> tuple[Gaps, FloatArray]:
         """Return the places whose gap is below reach, and the gaps (k,).
 
-        They are all there are: found by looking at all pairs of edges.
+        They are all there are: found by looking at all pairs of edges. Near places of
+        `beside` strands do not touch at a point, however they part; those are on edges
+        where the first of them is on its own.
         """
         x = np.ascontiguousarray(x)
         pieces, within = self._pieces(x), self.diameter + reach
         pairs = nearest_pairs(x, pieces, self.knots, within, self.apart)
-        pairs = pairs[pairs[:, 3] >= _PARTING]
-        beside = nearest_to_vertices(x, pieces, self.knots, within, self.apart)
-        other = beside[:, 4]
-        beside = beside[(other < _PARTING) & (other > -np.inf)]
-        rows = np.vstack([pairs, beside[:, :4]])
-        slides = np.arange(len(rows)) < len(pairs)
-        return Gaps(rows[:, 0], rows[:, 1], slides), rows[:, 2] - self.diameter
+        points = Gaps(pairs[:, 0], pairs[:, 1], np.ones(len(pairs), dtype=bool))
+        crossing = (pairs[:, 3] >= _PARTING) & self.unlike(points, beside, _ALONG)
+        offset = self._offset(beside)
+        rows = nearest_to_places(x, pieces, self.knots, offset, within, self.apart)
+        held = np.zeros(len(rows), dtype=bool)
+        least = Gaps(rows[:, 3], rows[:, 4], held)
+        along = (rows[:, 5] < _PARTING) | ~self.unlike(least, beside, _ALONG)
+        rows, pairs = rows[along & (rows[:, 5] > -np.inf)], pairs[crossing]
+        slides = np.arange(len(pairs) + len(rows)) < len(pairs)
+        found = np.vstack([pairs[:, :3], rows[:, :3]])
+        return Gaps(found[:, 0], found[:, 1], slides), found[:, 2] - self.diameter
 
-    def unlike(self, gaps: Gaps, others: Gaps) -> BoolArray:
-        """Return which of `gaps` (k,) are not beside any of others, on both strands."""
-        reach = _BESIDE * self.loop.rest_lengths.max()
+    def _offset(self, beside: Gaps) -> float:
+        """Return where on its edge the first of some places is, in parts of the edge."""
+        if not len(beside):
+            return 0.0
+        s = float(beside.s[0] % self.knots[-1])
+        edge = int(np.searchsorted(self.knots, s, side="right")) - 1
+        return float((s - self.knots[edge]) / self.loop.rest_lengths[edge])
+
+    def unlike(self, gaps: Gaps, others: Gaps, edges: float = _BESIDE) -> BoolArray:
+        """Return which of `gaps` (k,) are farther from others than that, on a strand."""
+        reach = edges * self.loop.rest_lengths.max()
         ends = (gaps.s, others.s), (gaps.t, others.t)
         off = [np.abs(one[:, None] - other) for one, other in ends]
         whole = self.knots[-1]
@@ -170,11 +188,28 @@ class Strands:
         unlike: BoolArray = ~(near[0] & near[1]).any(axis=1)
         return unlike
 
-    def ill_chosen(self, x: FloatArray, gaps: Gaps) -> BoolArray:
-        """Return which gaps (k,) are of the other kind by now: at a point, or beside."""
+    def distinct(self, gaps: Gaps) -> BoolArray:
+        """Return which gaps (k,) are not beside one before them."""
+        kept = np.ones(len(gaps), dtype=bool)
+        for k in range(1, len(gaps)):
+            before = np.arange(len(gaps)) < k
+            one = gaps[np.arange(len(gaps)) == k]
+            kept[k] = self.unlike(one, gaps[kept & before])[0]
+        return kept
+
+    def parting(self, x: FloatArray, gaps: Gaps) -> FloatArray:
+        """Return d2D/ds2 (k,) where D is least near each of the places, by s and t."""
         slides = np.ones(len(gaps), dtype=bool)
-        _, grows = self._followed(self._pieces(x), replace(gaps, slides=slides))
-        return np.where(gaps.slides, grows < _STAYS * _PARTING, grows >= _PARTING)
+        return self._followed(self._pieces(x), replace(gaps, slides=slides))[1]
+
+    def laid_along(self, x: FloatArray, gaps: Gaps) -> BoolArray:
+        """Return where (k,) strands touch at a point that lie along each other by now."""
+        return gaps.slides & (self.parting(x, gaps) < _STAYS * _PARTING)
+
+    def crossing(self, x: FloatArray, gaps: Gaps) -> BoolArray:
+        """Return where (k,) strands lie along each other that touch at a point by now."""
+        alone = np.array([(~self.unlike(gaps, gaps[here], _ALONG)).sum() <= 2 for here in np.eye(len(gaps), dtype=bool)], dtype=bool)
+        return ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
 
     def at(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
         """Return gaps followed to a loop x (n, d), and how wide they are (k,).

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
-from eulerplateau.loop import Gaps, HeldGaps, LoopEnergy, Strands, passed
+from eulerplateau.loop import NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands, passed
 from eulerplateau.solvers.descent import (
     FIRST_RADIUS,
     LARGEST_RADIUS,
@@ -37,6 +36,8 @@ _NEGATIVE = -1e-11
 _DEEP = 0.25
 # Rounds in which gaps are closed that the closing of others has made negative.
 _ROUNDS = 6
+# Times a step is halved in search of where strands that stop it begin to touch.
+_HALVINGS = 16
 # The residual below which it is asked whether strands pull, and what counts as pulling:
 # so much of the largest tension, and what an unbalanced force would account for.
 _ASKED = 1e-3
@@ -47,12 +48,21 @@ _CHANGES = 6
 
 @dataclass(frozen=True)
 class Touching:
-    """A loop with the gaps that are closed on it, and the model that keeps them."""
+    """A loop with the gaps that are closed on it, and the model that keeps them.
+
+    At places of `laid` strands touched at a point on the way, and lay along each other.
+    """
 
     model: TangentModel
     gaps: Gaps
+    laid: Gaps
     radius: float
     iteration: int
+
+    @property
+    def beside(self) -> Gaps:
+        """Places where strands lie along each other, or did so on the way."""
+        return self.laid.joined(self.gaps[~self.gaps.slides])
 
     @property
     def forces(self) -> FloatArray:
@@ -79,8 +89,8 @@ class ContactDescent:
 
     def run(self, x: FloatArray) -> tuple[Touching, Status]:
         """Descend from a loop (n, d) on which no strands overlap."""
-        near, gaps = self.strands.near(x, CLOSED)
-        state = self._at(x, near, FIRST_RADIUS, 0)
+        near, _ = self.strands.near(x, CLOSED)
+        state = self._at(x, near, NO_GAPS, FIRST_RADIUS, 0)
         changes = 0
         while state.iteration < self.max_iterations:
             heed()
@@ -106,10 +116,25 @@ class ContactDescent:
         """Return the constraint that keeps gaps closed."""
         return HeldGaps(self.energy.constraint, self.strands, gaps)
 
-    def _at(self, x: FloatArray, gaps: Gaps, radius: float, iteration: int) -> Touching:
+    def _at(
+        self, x: FloatArray, gaps: Gaps, laid: Gaps, radius: float, iteration: int
+    ) -> Touching:
+        """Return the state on a loop with these gaps, those of one place only once.
+
+        Strands that come to lie along each other are held there, and touch at no point.
+        """
+        along = self.strands.laid_along(x, gaps)
+        if along.any():
+            # Where they were before: along each other they are nearest anywhere.
+            laid = laid.joined(gaps[along])
+            gaps = replace(gaps, slides=gaps.slides & ~along)
         gaps, _ = self.strands.at(x, gaps)
+        gaps = gaps[self.strands.distinct(gaps)]
         energy = replace(self.energy, constraint=self.held(gaps))
-        return Touching(tangent_model(energy, x), gaps, radius, iteration)
+        return Touching(tangent_model(energy, x), gaps, laid, radius, iteration)
+
+    def _with(self, state: Touching, x: FloatArray, gaps: Gaps, radius: float) -> Touching:
+        return self._at(x, gaps, state.laid, radius, state.iteration + 1)
 
     def _let_go(self, state: Touching) -> Touching | None:
         """Return the state without the strands that pull at each other; None if none do."""
@@ -118,26 +143,23 @@ class ContactDescent:
         pushing = state.forces > -state.uncertain
         if pushing.all():
             return None
-        kept = state.gaps[pushing]
-        return self._at(state.model.x, kept, state.radius, state.iteration + 1)
+        return self._with(state, state.model.x, state.gaps[pushing], state.radius)
 
     def _chosen_anew(self, state: Touching) -> Touching | None:
-        """Return the state with each contact of the kind it is; None if all of them are.
-
-        And with the gaps closed that are negative beside others.
-        """
-        if not len(state.gaps):
+        """Return the state with strands touching at a point that part again; else None."""
+        x, gaps = state.model.x, state.gaps
+        crossing = self.strands.crossing(x, gaps)
+        if not crossing.any():
             return None
-        wrong = self.strands.ill_chosen(state.model.x, state.gaps)
-        if not wrong.any():
+        kept, laid = gaps[~crossing], state.laid
+        laid = laid[self.strands.unlike(laid, gaps[crossing])]
+        beside = laid.joined(kept[~kept.slides])
+        near, _ = self.strands.near(x, CLOSED, beside)
+        after = kept.joined(near[self.strands.unlike(near, kept)])
+        found = self.held(after).project(x)
+        if found is None:
             return None
-        kept = state.gaps[~wrong]
-        near, _ = self.strands.near(state.model.x, CLOSED)
-        gaps = kept.joined(near[self.strands.unlike(near, kept)])
-        x = self.held(gaps).project(state.model.x)
-        if x is None:
-            return None
-        return self._at(x, gaps, state.radius, state.iteration + 1)
+        return self._at(found, after, laid, state.radius, state.iteration + 1)
 
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
@@ -156,7 +178,7 @@ class ContactDescent:
                 ):
                     grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
                     wider = min(2 * radius, LARGEST_RADIUS) if grow else radius
-                    return self._at(x, gaps, wider, state.iteration + 1)
+                    return self._with(state, x, gaps, wider)
             stopped = self._stopped(state, step.moved)
             if stopped is not None:
                 return stopped
@@ -173,10 +195,10 @@ class ContactDescent:
         x, gaps = state.model.x, state.gaps
         after: FloatArray | None = x + moved
         for _ in range(_ROUNDS):
-            after = self.held(gaps).project(after)
+            after = self._closed(after, gaps)
             if after is None or passed(x, after):
                 return None
-            new = self._overlaps(after, gaps)
+            new = self._overlaps(after, gaps, state.beside)
             if new is None:
                 return None
             if not len(new):
@@ -185,10 +207,19 @@ class ContactDescent:
             gaps = gaps.joined(new)
         return None
 
-    def _overlaps(self, x: FloatArray, gaps: Gaps) -> Gaps | None:
+    def _closed(self, x: FloatArray, gaps: Gaps) -> FloatArray | None:
+        """Return the loop next to x with gaps closed, if they then stay where they are."""
+        found = self.held(gaps).project(x)
+        if found is None or not len(gaps):
+            return found
+        after, _ = self.strands.at(found, gaps)
+        return found if self.strands.distinct(after).all() else None
+
+    def _overlaps(self, x: FloatArray, gaps: Gaps, beside: Gaps) -> Gaps | None:
         """Return the places where strands overlap beside closed gaps; None if too far."""
-        near, widths = self.strands.near(x, _NEGATIVE)
-        new = self.strands.unlike(near, gaps)
+        near, widths = self.strands.near(x, _NEGATIVE, beside)
+        held, _ = self.strands.at(x, gaps)
+        new = self.strands.unlike(near, held)
         if new.any() and widths[new].min() < -_DEEP * self.strands.diameter:
             return None
         return near[new]
@@ -196,33 +227,43 @@ class ContactDescent:
     def _stopped(self, state: Touching, moved: FloatArray) -> Touching | None:
         """Return the state where a step is stopped by strands that it would make overlap.
 
-        At the first of them, which touch from there on. None if there are none, or if the
-        energy does not fall on the way there.
+        They touch from there on. None if there are none, or if the energy does not fall on
+        the way there.
         """
-        x = state.model.x
-        straight = self.held(state.gaps).project(x + moved)
-        if straight is None or passed(x, straight):
+        free, part = 0.0, 1.0
+        for _ in range(_HALVINGS):
+            try:
+                straight = self._closed(state.model.x + part * moved, state.gaps)
+                new = None
+                if straight is not None and not passed(state.model.x, straight):
+                    new = self._overlaps(straight, state.gaps, state.beside)
+                if new is not None and not len(new):
+                    if part == 1.0:
+                        return None
+                    free = part
+                elif new is not None and straight is not None:
+                    found = self._stopped_by(state, straight, new)
+                    if found is not None:
+                        return found
+                    last = part
+                else:
+                    last = part
+            except LinAlgError:
+                last = part
+            part = 0.5 * (free + last)
+        return None
+
+    def _stopped_by(self, state: Touching, x: FloatArray, new: Gaps) -> Touching | None:
+        """Return the state where strands touch that overlap on a loop, if that is lower."""
+        gaps, before = state.gaps.joined(new), state.model.x
+        found = self._closed(x, gaps)
+        if found is None or passed(before, found):
             return None
-        near, after = self.strands.near(straight, _NEGATIVE)
-        chosen = self.strands.unlike(near, state.gaps)
-        near, after = near[chosen], after[chosen]
-        if not len(near):
-            return None
-        try:
-            _, before = self.strands.at(x, near)
-        except LinAlgError:
-            return None
-        parts = np.clip(before / (before - after), 0.0, 1.0)
-        first = near[parts <= parts.min() * (1 + 1e-9)]
-        gaps = state.gaps.joined(first)
-        found = self.held(gaps).project(x + float(parts.min()) * moved)
-        if found is None or passed(x, found):
-            return None
-        left = self._overlaps(found, gaps)
+        left = self._overlaps(found, gaps, state.beside)
         if left is None or len(left):
             return None
-        gained = change_of_energy(self.energy, x, found)
-        noise = noise_of(self.energy, x, found - x, state.model.tensions)
+        gained = change_of_energy(self.energy, before, found)
+        noise = noise_of(self.energy, before, found - before, state.model.tensions)
         if gained is None or gained > max(noise, CLOSED * state.uncertain):
             return None
-        return self._at(found, gaps, state.radius, state.iteration + 1)
+        return self._with(state, found, gaps, state.radius)

@@ -52,7 +52,7 @@ def search(
     x_loop = close_with_lengths(problem.loop, start.x_loop) if smooth is None else smooth
     if x_loop is None:
         return None
-    if smooth is not None and (tied := _tied(problem)) is not None:
+    if smooth is not None and (tied := tied_film(problem)) is not None:
         start = tied.shape(x_loop)
     # Blocks of a hundred rows: two threads would mostly wait for each other.
     with one_thread():
@@ -60,7 +60,7 @@ def search(
             found = _near(problem, start, x_loop, load, max_iterations, observe)
             if found is not None:
                 return found
-        tied = _tied(problem)
+        tied = tied_film(problem)
         if tied is None:
             return None
         models = quadratic_models(problem.loop, tied.energy(problem.loop, load))
@@ -69,7 +69,7 @@ def search(
         return _near(problem, shape, shape.x_loop, load, max_iterations, observe)
 
 
-def _tied(problem: Problem) -> FilmOfLoop | None:
+def tied_film(problem: Problem) -> FilmOfLoop | None:
     """Return the film of least Dirichlet energy, tied to the mesh as it was given.
 
     It can be spanned across any loop, however crumpled.

@@ -10,7 +10,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import LoopEnergy, close_with_lengths, strands_of
+from eulerplateau.loop import close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.contact.contacts import contacts_of
 from eulerplateau.solvers.contact.descent import ContactDescent, Touching
@@ -18,6 +18,7 @@ from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import TangentModel, stability
+from eulerplateau.solvers.soap import tied_film
 from eulerplateau.threads import one_thread
 
 # A soap film is sought near the last shape at most so many times in one solve.
@@ -46,28 +47,52 @@ def search(
     x_loop = separated(strands, x_loop)
     if x_loop is None:
         return None
-    spent, found = 0, None
-    shape = start
     with one_thread():
-        for _ in range(_SHAPES):
-            try:
-                carried = problem.film.carried(shape, film.lift(x_loop))
-                film = problem.film.of_loop(problem.film.prepared(carried))
-                energy = film.energy(problem.loop, load)
-                ends = partial(_elsewhere, film)
-                descent = ContactDescent(
-                    energy, strands, max_iterations - spent, observe, ends
-                )
-                state, status = descent.run(x_loop)
-            except LinAlgError:
-                return None if found is None else found(Status.STALLED)
-            spent += state.iteration
-            x_loop = state.model.x
-            shape = film.shape(x_loop)
-            found = partial(_record, problem, load, film, shape, state, spent)
-            own = energy.holds(x_loop) and film.made_at(x_loop)
-            if own or status is Status.STALLED or spent >= max_iterations:
-                return found(status)
+        found = _near(problem, start, x_loop, load, max_iterations, observe)
+        if found is not None or problem.film.dimension == 2:
+            return found
+        # A film tied to the mesh as it was given can be spanned across any loop.
+        tied = tied_film(problem)
+        if tied is None:
+            return None
+        energy = tied.energy(problem.loop, load)
+        state, _ = ContactDescent(energy, strands, max_iterations).run(x_loop)
+        shape = tied.shape(state.model.x)
+        return _near(problem, shape, state.model.x, load, max_iterations, observe)
+
+
+def _near(
+    problem: Problem,
+    shape: Shape,
+    x_loop: FloatArray,
+    load: float,
+    max_iterations: int,
+    observe: Callable[[FloatArray], None],
+) -> Equilibrium | None:
+    """Return what a film near a shape, on a loop (n_b, d), comes to; None if there is none.
+
+    A soap film is known near one shape at a time, so the descent begins again at each it
+    comes to, until it is at rest near its own.
+    """
+    spent, found, strands = 0, None, strands_of(problem.loop)
+    film = problem.film.of_loop(shape)
+    for _ in range(_SHAPES):
+        try:
+            carried = problem.film.carried(shape, film.lift(x_loop))
+            film = problem.film.of_loop(problem.film.prepared(carried))
+            energy = film.energy(problem.loop, load)
+            left, ends = max_iterations - spent, partial(_elsewhere, film)
+            descent = ContactDescent(energy, strands, left, observe, ends)
+            state, status = descent.run(x_loop)
+        except LinAlgError:
+            return None if found is None else found(Status.STALLED)
+        spent += state.iteration
+        x_loop = state.model.x
+        shape = film.shape(x_loop)
+        found = partial(_record, problem, load, film, shape, state, spent)
+        own = energy.holds(x_loop) and film.made_at(x_loop)
+        if own or status is Status.STALLED or spent >= max_iterations:
+            return found(status)
     return None if found is None else found(status)
 
 

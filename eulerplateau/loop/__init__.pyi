@@ -31,6 +31,7 @@ from .motions import (
 )
 from .rod import Rod as Rod
 from .strands import (
+    ALONG as ALONG,
     NO_GAPS as NO_GAPS,
     Gaps as Gaps,
     Strands as Strands,

@@ -41,7 +41,7 @@ _STAYS = 0.5
 # Parts of an edge within which two gaps are the same, or depend on each other.
 _BESIDE = 0.75
 # Edges within which strands that lie along each other do so.
-_ALONG = 2.5
+ALONG = 2.5
 # By how many edges the places of a gap may move while it is followed.
 _FOLLOWED = 5.0
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
@@ -159,12 +159,12 @@ class Strands:
         pieces, within = self._pieces(x), self.diameter + reach
         pairs = nearest_pairs(x, pieces, self.knots, within, self.apart)
         points = Gaps(pairs[:, 0], pairs[:, 1], np.ones(len(pairs), dtype=bool))
-        crossing = (pairs[:, 3] >= _PARTING) & self.unlike(points, beside, _ALONG)
+        crossing = (pairs[:, 3] >= _PARTING) & self.unlike(points, beside, ALONG)
         offset = self._offset(beside)
         rows = nearest_to_places(x, pieces, self.knots, offset, within, self.apart)
         held = np.zeros(len(rows), dtype=bool)
         least = Gaps(rows[:, 3], rows[:, 4], held)
-        along = (rows[:, 5] < _PARTING) | ~self.unlike(least, beside, _ALONG)
+        along = (rows[:, 5] < _PARTING) | ~self.unlike(least, beside, ALONG)
         rows, pairs = rows[along & (rows[:, 5] > -np.inf)], pairs[crossing]
         slides = np.arange(len(pairs) + len(rows)) < len(pairs)
         found = np.vstack([pairs[:, :3], rows[:, :3]])
@@ -208,7 +208,7 @@ class Strands:
 
     def crossing(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands lie along each other that touch at a point by now."""
-        alone = np.array([(~self.unlike(gaps, gaps[here], _ALONG)).sum() <= 2 for here in np.eye(len(gaps), dtype=bool)], dtype=bool)
+        alone = np.array([(~self.unlike(gaps, gaps[here], ALONG)).sum() <= 2 for here in np.eye(len(gaps), dtype=bool)], dtype=bool)
         return ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
 
     def at(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:

@@ -16,7 +16,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
-from eulerplateau.loop import NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands, passed
+from eulerplateau.loop import ALONG, NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands, passed
 from eulerplateau.solvers.descent import (
     FIRST_RADIUS,
     LARGEST_RADIUS,
@@ -42,8 +42,6 @@ _HALVINGS = 16
 # so much of the largest tension, and what an unbalanced force would account for.
 _ASKED = 1e-3
 _PULLS = 1e-9
-# How often the kind of a contact may be chosen anew.
-_CHANGES = 6
 
 
 @dataclass(frozen=True)
@@ -91,19 +89,14 @@ class ContactDescent:
         """Descend from a loop (n, d) on which no strands overlap."""
         near, _ = self.strands.near(x, CLOSED)
         state = self._at(x, near, NO_GAPS, FIRST_RADIUS, 0)
-        changes = 0
         while state.iteration < self.max_iterations:
             heed()
-            if (fewer := self._let_go(state)) is not None:
-                state = fewer
+            if (other := self._let_go(state) or self._crossing(state)) is not None:
+                state = other
                 continue
             if at_rounding(state.model) and stability(state.model).n_unstable == 0:
-                changed = self._chosen_anew(state) if changes < _CHANGES else None
-                if changed is None:
-                    return state, Status.CONVERGED
-                state, changes = changed, changes + 1
-                continue
-            after = self._advance(state)
+                return state, Status.CONVERGED
+            after = self._advance(state) or self._let_go(state, np.inf)
             if after is None:
                 return state, Status.STALLED
             state = after
@@ -136,27 +129,34 @@ class ContactDescent:
     def _with(self, state: Touching, x: FloatArray, gaps: Gaps, radius: float) -> Touching:
         return self._at(x, gaps, state.laid, radius, state.iteration + 1)
 
-    def _let_go(self, state: Touching) -> Touching | None:
-        """Return the state without the strands that pull at each other; None if none do."""
-        if state.model.residual > _ASKED or not len(state.gaps):
+    def _let_go(self, state: Touching, most: float = _ASKED) -> Touching | None:
+        """Return the state without the strands that pull at each other; None if none do.
+
+        It is not asked where forces are unbalanced by more than `most`.
+        """
+        if state.model.residual > most or not len(state.gaps):
             return None
-        pushing = state.forces > -state.uncertain
+        certain = state.uncertain if most < np.inf else 0.0
+        pushing = state.forces >= -certain
         if pushing.all():
             return None
         return self._with(state, state.model.x, state.gaps[pushing], state.radius)
 
-    def _chosen_anew(self, state: Touching) -> Touching | None:
-        """Return the state with strands touching at a point that part again; else None."""
+    def _crossing(self, state: Touching) -> Touching | None:
+        """Return the state with strands touching at points that no longer lie along.
+
+        None if they do so nowhere. The energy may rise by a force times the tiny gap that
+        is closed.
+        """
         x, gaps = state.model.x, state.gaps
         crossing = self.strands.crossing(x, gaps)
         if not crossing.any():
             return None
-        kept, laid = gaps[~crossing], state.laid
-        laid = laid[self.strands.unlike(laid, gaps[crossing])]
-        beside = laid.joined(kept[~kept.slides])
-        near, _ = self.strands.near(x, CLOSED, beside)
-        after = kept.joined(near[self.strands.unlike(near, kept)])
-        found = self.held(after).project(x)
+        kept, changed = gaps[~crossing], gaps[crossing]
+        laid = state.laid[self.strands.unlike(state.laid, changed, ALONG)]
+        points, _ = self.strands.at(x, replace(changed, slides=crossing[crossing]))
+        after = kept.joined(points[self.strands.distinct(points)])
+        found = self._closed(x, after)
         if found is None:
             return None
         return self._at(found, after, laid, state.radius, state.iteration + 1)
@@ -198,13 +198,13 @@ class ContactDescent:
             after = self._closed(after, gaps)
             if after is None or passed(x, after):
                 return None
-            new = self._overlaps(after, gaps, state.beside)
-            if new is None:
+            amended = self._amended(after, gaps, state.beside)
+            if amended is None:
                 return None
-            if not len(new):
+            if amended is gaps:
                 noise = noise_of(self.energy, x, after - x, state.model.tensions)
                 return after, gaps, noise
-            gaps = gaps.joined(new)
+            gaps = amended
         return None
 
     def _closed(self, x: FloatArray, gaps: Gaps) -> FloatArray | None:
@@ -212,17 +212,25 @@ class ContactDescent:
         found = self.held(gaps).project(x)
         if found is None or not len(gaps):
             return found
-        after, _ = self.strands.at(found, gaps)
+        try:
+            after, _ = self.strands.at(found, gaps)
+        except LinAlgError:
+            return None
         return found if self.strands.distinct(after).all() else None
 
-    def _overlaps(self, x: FloatArray, gaps: Gaps, beside: Gaps) -> Gaps | None:
-        """Return the places where strands overlap beside closed gaps; None if too far."""
+    def _amended(self, x: FloatArray, gaps: Gaps, beside: Gaps) -> Gaps | None:
+        """Return the gaps to be closed where strands overlap: the same where they do not.
+
+        None if they overlap too far.
+        """
         near, widths = self.strands.near(x, _NEGATIVE, beside)
         held, _ = self.strands.at(x, gaps)
         new = self.strands.unlike(near, held)
-        if new.any() and widths[new].min() < -_DEEP * self.strands.diameter:
+        if not new.any():
+            return gaps
+        if widths[new].min() < -_DEEP * self.strands.diameter:
             return None
-        return near[new]
+        return gaps.joined(near[new])
 
     def _stopped(self, state: Touching, moved: FloatArray) -> Touching | None:
         """Return the state where a step is stopped by strands that it would make overlap.
@@ -230,37 +238,33 @@ class ContactDescent:
         They touch from there on. None if there are none, or if the energy does not fall on
         the way there.
         """
-        free, part = 0.0, 1.0
+        x, free, stopped, part = state.model.x, 0.0, 1.0, 1.0
         for _ in range(_HALVINGS):
-            try:
-                straight = self._closed(state.model.x + part * moved, state.gaps)
-                new = None
-                if straight is not None and not passed(state.model.x, straight):
-                    new = self._overlaps(straight, state.gaps, state.beside)
-                if new is not None and not len(new):
-                    if part == 1.0:
-                        return None
-                    free = part
-                elif new is not None and straight is not None:
-                    found = self._stopped_by(state, straight, new)
-                    if found is not None:
-                        return found
-                    last = part
-                else:
-                    last = part
-            except LinAlgError:
-                last = part
-            part = 0.5 * (free + last)
+            straight, gaps = self._closed(x + part * moved, state.gaps), None
+            if straight is not None and not passed(x, straight):
+                gaps = self._amended(straight, state.gaps, state.beside)
+            if gaps is state.gaps:
+                if part == 1.0:
+                    return None
+                free = part
+            else:
+                found = self._stopped_at(state, straight, gaps)
+                if found is not None:
+                    return found
+                stopped = part
+            part = 0.5 * (free + stopped)
         return None
 
-    def _stopped_by(self, state: Touching, x: FloatArray, new: Gaps) -> Touching | None:
+    def _stopped_at(
+        self, state: Touching, x: FloatArray | None, gaps: Gaps | None
+    ) -> Touching | None:
         """Return the state where strands touch that overlap on a loop, if that is lower."""
-        gaps, before = state.gaps.joined(new), state.model.x
-        found = self._closed(x, gaps)
+        if x is None or gaps is None:
+            return None
+        before, found = state.model.x, self._closed(x, gaps)
         if found is None or passed(before, found):
             return None
-        left = self._overlaps(found, gaps, state.beside)
-        if left is None or len(left):
+        if self._amended(found, gaps, state.beside) is not gaps:
             return None
         gained = change_of_energy(self.energy, before, found)
         noise = noise_of(self.energy, before, found - before, state.model.tensions)

@@ -42,6 +42,10 @@ _HALVINGS = 16
 # so much of the largest tension, and what an unbalanced force would account for.
 _ASKED = 1e-3
 _PULLS = 1e-9
+# By which part of the diameter strands may overlap between vertices at which they are held
+# along each other; and how often that is mended.
+_BETWEEN = 1e-3
+_CHANGES = 6
 
 
 @dataclass(frozen=True)
@@ -85,17 +89,30 @@ class ContactDescent:
     observe: Callable[[FloatArray], None] = lambda x_loop: None
     ends: Callable[[TangentModel], bool] = lambda model: False
 
-    def run(self, x: FloatArray) -> tuple[Touching, Status]:
-        """Descend from a loop (n, d) on which no strands overlap."""
-        near, _ = self.strands.near(x, CLOSED)
-        state = self._at(x, near, NO_GAPS, FIRST_RADIUS, 0)
+    def run(
+        self, x: FloatArray, before: Touching | None = None
+    ) -> tuple[Touching, Status]:
+        """Descend from a loop (n, d) on which no strands overlap.
+
+        Or from where one has come to `before`, of a film made elsewhere.
+        """
+        if before is None:
+            near, _ = self.strands.near(x, CLOSED)
+            state = self._at(x, near, NO_GAPS, FIRST_RADIUS, 0)
+        else:
+            state = self._at(x, before.gaps, before.laid, FIRST_RADIUS, 0)
+        changes = 0
         while state.iteration < self.max_iterations:
             heed()
             if (other := self._let_go(state) or self._crossing(state)) is not None:
                 state = other
                 continue
             if at_rounding(state.model) and stability(state.model).n_unstable == 0:
-                return state, Status.CONVERGED
+                other = self._parted(state) if changes < _CHANGES else None
+                if other is None:
+                    return state, Status.CONVERGED
+                state, changes = other, changes + 1
+                continue
             after = self._advance(state) or self._let_go(state, np.inf)
             if after is None:
                 return state, Status.STALLED
@@ -160,6 +177,22 @@ class ContactDescent:
         if found is None:
             return None
         return self._at(found, after, laid, state.radius, state.iteration + 1)
+
+    def _parted(self, state: Touching) -> Touching | None:
+        """Return the state with points where strands overlap between two vertices' gaps.
+
+        None if they do so nowhere, or by so little that an edge's length accounts for it.
+        """
+        x, gaps = state.model.x, state.gaps
+        near, _ = self.strands.near(x, -_BETWEEN * self.strands.diameter)
+        points = near[near.slides]
+        points = points[self.strands.unlike(points, gaps[gaps.slides])]
+        if not len(points):
+            return None
+        kept = gaps.slides | self.strands.unlike(gaps, points, 1.05)
+        after = gaps[kept].joined(points)
+        found = self._closed(x, after)
+        return None if found is None else self._with(state, found, after, state.radius)
 
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""

@@ -74,7 +74,7 @@ def _near(
     A soap film is known near one shape at a time, so the descent begins again at each it
     comes to, until it is at rest near its own.
     """
-    spent, found, strands = 0, None, strands_of(problem.loop)
+    spent, found, state, strands = 0, None, None, strands_of(problem.loop)
     film = problem.film.of_loop(shape)
     for _ in range(_SHAPES):
         try:
@@ -83,7 +83,7 @@ def _near(
             energy = film.energy(problem.loop, load)
             left, ends = max_iterations - spent, partial(_elsewhere, film)
             descent = ContactDescent(energy, strands, left, observe, ends)
-            state, status = descent.run(x_loop)
+            state, status = descent.run(x_loop, state)
         except LinAlgError:
             return None if found is None else found(Status.STALLED)
         spent += state.iteration

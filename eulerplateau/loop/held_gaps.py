@@ -14,6 +14,7 @@ from eulerplateau.loop.strands import Gaps, Strands
 _STEPS = 30
 _SMALL = 1e-12
 
+
 @dataclass(frozen=True)
 class HeldGaps:
     """Every edge keeps its length, and k gaps are closed: n + k equations.
@@ -85,7 +86,9 @@ class HeldGaps:
         """Return the least displacement (n, d) that changes the equations by so much."""
         n, d = shape
         by_vertex = np.ascontiguousarray(rows.reshape(-1, n, d).transpose(1, 0, 2))
-        moved = (self.strands.compliance @ by_vertex.reshape(n, -1)).reshape(by_vertex.shape)
+        moved = (self.strands.compliance @ by_vertex.reshape(n, -1)).reshape(
+            by_vertex.shape
+        )
         moved = moved.transpose(0, 2, 1).reshape(n * d, -1)
         shares = cho_solve(cho_factor(rows @ moved), excess)
         closing: FloatArray = (moved @ shares).reshape(shape)

@@ -122,7 +122,7 @@ class Loop:
         return strands_meet(x_loop, float(self.rest_lengths.max()))
 
     def is_too_thick(self, x_loop: FloatArray) -> bool:
-        """Whether a loop (n, d) bends more than a rod of its diameter can: kappa > 2 / d."""
+        """Whether a loop (n, d) bends more than so thick a rod can: kappa > 2 / d."""
         if self.diameter is None:
             return False
         tangent = self.chords(x_loop) / self.rest_lengths[:, None]

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import BoolArray, FloatArray
 
 # Newton's steps from a guess, the last one's length in parts of the loop, and by how much
 # the second derivative has to be positive.
@@ -24,8 +24,8 @@ _SETTLED = 1e-14
 _CURVED = 1e-10
 # An edge's curve leaves its chord by a fraction of its length.
 _SLACK = 1.2
-# How much nearer chords may be than their curves are, in squared edges.
-_SAGGING = 3.0
+# How much nearer chords may be than their curves are, in curvatures times squared edges.
+_SAGGING = 0.5
 # Minima nearer to each other, in parts of the loop, are the same.
 _SAME = 1e-7
 
@@ -34,7 +34,7 @@ _SAME = 1e-7
 def place(pieces: FloatArray, knots: FloatArray, s: float, out: FloatArray) -> None:
     """Write gamma, gamma', gamma'' at s to `out` (3, d); s is taken round the loop."""
     n, d = knots.shape[0] - 1, pieces.shape[2]
-    whole = knots[n]
+    whole = float(knots[n])
     s = s - whole * np.floor(s / whole)
     e = min(max(np.searchsorted(knots, s, side="right") - 1, 0), n - 1)
     u = s - knots[e]
@@ -172,12 +172,13 @@ def _near_chords(x: FloatArray, i: int, j: int, reach: float, slack: float) -> b
         square += 0.25 * (x[i, k] + x[i1, k] - x[j, k] - x[j1, k]) ** 2
         first += (x[i1, k] - x[i, k]) ** 2
         second += (x[j1, k] - x[j, k]) ** 2
-    return square < (reach + 0.5 * slack * (np.sqrt(first) + np.sqrt(second))) ** 2
+    lengths = np.sqrt(first) + np.sqrt(second)
+    return bool(square < (reach + 0.5 * slack * lengths) ** 2)
 
 
 @njit(cache=True)
 def _nearest_on_chord(x: FloatArray, point: FloatArray, j: int) -> float:
-    """Return where the line of chord j is nearest to a point (d,), in parts of the chord."""
+    """Return where the line of chord j is nearest to a point (d,), in parts of it."""
     j1 = (j + 1) % x.shape[0]
     along, square = 0.0, 0.0
     for k in range(x.shape[1]):
@@ -185,6 +186,18 @@ def _nearest_on_chord(x: FloatArray, point: FloatArray, j: int) -> float:
         along += v * (point[k] - x[j, k])
         square += v * v
     return along / square
+
+
+@njit(cache=True)
+def _largest_bend(pieces: FloatArray, knots: FloatArray) -> float:
+    """Return the largest of |gamma''| at a vertex times the squared edge behind it."""
+    largest = 0.0
+    for i in range(pieces.shape[0]):
+        square = 0.0
+        for k in range(pieces.shape[2]):
+            square += 4.0 * pieces[i, 1, k] ** 2
+        largest = max(largest, np.sqrt(square) * (knots[i + 1] - knots[i]) ** 2)
+    return largest
 
 
 @njit(cache=True)
@@ -197,22 +210,22 @@ def nearest_pairs(
     pairs of edges are looked at.
     """
     n = x.shape[0]
-    whole = knots[n]
-    most = _SAGGING * (whole / n) ** 2 / whole
+    whole = float(knots[n])
+    most = _SAGGING * _largest_bend(pieces, knots)
     found = np.empty((16, 4))
     count = 0
     for i in range(n):
         for j in range(i + 2, n):
-            behind = knots[j + 1] - knots[i]
-            if behind < apart or whole - (knots[j] - knots[i + 1]) < apart:
+            ahead = float(knots[j + 1] - knots[i])
+            if ahead < apart or whole - float(knots[j] - knots[i + 1]) < apart:
                 continue
             if not _near_chords(x, i, j, reach, _SLACK):
                 continue
             a, b, distance = _closest_on_chords(x, i, j)
             if not _nearest_nearby(x, i, j, distance, most):
                 continue
-            s = knots[i] + a * (knots[i + 1] - knots[i])
-            t = knots[j] + b * (knots[j + 1] - knots[j])
+            s = float(knots[i] + a * (knots[i + 1] - knots[i]))
+            t = float(knots[j] + b * (knots[j + 1] - knots[j]))
             s, t, distance, grows = settle(pieces, knots, s, t, True)
             if not distance < reach or _apart(s, t, whole) < apart:
                 continue
@@ -221,7 +234,7 @@ def nearest_pairs(
             known = False
             for m in range(count):
                 off = max(_apart(s, found[m, 0], whole), _apart(t, found[m, 1], whole))
-                known = known or off < _SAME * whole
+                known = known or bool(off < _SAME * whole)
             if known:
                 continue
             if count == found.shape[0]:
@@ -247,29 +260,30 @@ def nearest_to_places(
     (s', t') near by the distance is least by both; d2D/ds2 is what it is there.
     """
     n, d = x.shape
-    whole = knots[n]
+    whole = float(knots[n])
     found, here = np.empty((16, 6)), np.empty((3, d))
     count = 0
     for i in range(n):
-        first, start = count, knots[i] + offset * (knots[i + 1] - knots[i])
+        first = count
+        start = float(knots[i] + offset * (knots[i + 1] - knots[i]))
         place(pieces, knots, start, here)
         for j in range(i + 1, n):
-            behind = knots[j + 1] - knots[i]
-            if behind < apart or whole - (knots[j] - knots[i + 1]) < apart:
+            ahead = float(knots[j + 1] - knots[i])
+            if ahead < apart or whole - float(knots[j] - knots[i + 1]) < apart:
                 continue
             if not _near_chords(x, i, j, reach, 2.0 * _SLACK):
                 continue
             b = _nearest_on_chord(x, here[0], j)
             if b < -_SLACK or b > 1.0 + _SLACK:
                 continue
-            guess = knots[j] + b * (knots[j + 1] - knots[j])
+            guess = float(knots[j] + b * (knots[j + 1] - knots[j]))
             s, t, distance, _ = settle(pieces, knots, start, guess, False)
             t = t - whole * np.floor(t / whole)
             if not distance < reach or _apart(s, t, whole) < apart or t < s:
                 continue
             known = False
             for m in range(first, count):
-                known = known or _apart(t, found[m, 1], whole) < _SAME * whole
+                known = known or bool(_apart(t, found[m, 1], whole) < _SAME * whole)
             if known:
                 continue
             if count == found.shape[0]:
@@ -285,7 +299,7 @@ def nearest_to_places(
 
 @njit(cache=True)
 def settle_each(
-    pieces: FloatArray, knots: FloatArray, s: FloatArray, t: FloatArray, slides: FloatArray
+    pieces: FloatArray, knots: FloatArray, s: FloatArray, t: FloatArray, slides: BoolArray
 ) -> FloatArray:
     """Return `settle` of each of k pairs: rows s, t, D, d2D/ds2 (k, 4)."""
     found = np.empty((s.shape[0], 4))

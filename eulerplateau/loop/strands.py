@@ -103,7 +103,7 @@ class _Between:
 
 @dataclass(frozen=True)
 class Strands:
-    """The strands of a loop that is `diameter` thick, as functions of its vertices x (n, d).
+    """The strands of a loop that is so thick, as functions of its vertices x (n, d).
 
     Gaps are in units of L; negative where strands overlap. Places that may touch are more
     than `apart` from each other along the loop.
@@ -204,11 +204,18 @@ class Strands:
 
     def laid_along(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands touch at a point that lie along each other by now."""
-        return gaps.slides & (self.parting(x, gaps) < _STAYS * _PARTING)
+        along: BoolArray = self.parting(x, gaps) < _STAYS * _PARTING
+        return gaps.slides & along
 
     def crossing(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands lie along each other that touch at a point by now."""
-        alone = np.array([(~self.unlike(gaps, gaps[here], ALONG)).sum() <= 2 for here in np.eye(len(gaps), dtype=bool)], dtype=bool)
+        alone = np.array(
+            [
+                (~self.unlike(gaps, gaps[here], ALONG)).sum() <= 2
+                for here in np.eye(len(gaps), dtype=bool)
+            ],
+            dtype=bool,
+        )
         return ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
 
     def at(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
@@ -269,7 +276,7 @@ class Strands:
     def _eliminated(
         self, found: _Between, slides: BoolArray, size: int
     ) -> tuple[FloatArray, FloatArray]:
-        """Return M (k, 2, d n) and K^-1 (k, 2, 2), rows and columns of 0 where s is held."""
+        """Return M (k, 2, d n) and K^-1 (k, 2, 2), which is 0 along s where s is held."""
         along, normals, distances = found.along, found.normals, found.distances
         flat = along - (along * normals).sum(axis=2)[:, :, None] * normals
         flat /= distances[:, None]
@@ -289,8 +296,12 @@ class Strands:
         along = self._between(x, gaps).along
         unit = along / np.linalg.norm(along, axis=2)[:, :, None]
         cosine = np.abs((unit[0] * unit[1]).sum(axis=1))
-        sine = np.linalg.norm(unit[0] - np.sign((unit[0] * unit[1]).sum(axis=1))[:, None] * unit[1], axis=1)
-        half: FloatArray = np.degrees(2 * np.arctan2(0.5 * sine, np.sqrt(0.5 * (1 + cosine))))
+        sine = np.linalg.norm(
+            unit[0] - np.sign((unit[0] * unit[1]).sum(axis=1))[:, None] * unit[1], axis=1
+        )
+        half: FloatArray = np.degrees(
+            2 * np.arctan2(0.5 * sine, np.sqrt(0.5 * (1 + cosine)))
+        )
         return half
 
 

@@ -144,7 +144,9 @@ def at_rounding(model: Model) -> bool:
     return model.residual <= max(4 * model.rounding, 1e-13)
 
 
-def change_of_energy(energy: LoopEnergy, x: FloatArray, after: FloatArray | None) -> float | None:
+def change_of_energy(
+    energy: LoopEnergy, x: FloatArray, after: FloatArray | None
+) -> float | None:
     """Return the change of energy; None where there is no loop, or no film on it."""
     if after is None:
         return None

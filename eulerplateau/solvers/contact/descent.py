@@ -89,9 +89,7 @@ class ContactDescent:
     observe: Callable[[FloatArray], None] = lambda x_loop: None
     ends: Callable[[TangentModel], bool] = lambda model: False
 
-    def run(
-        self, x: FloatArray, before: Touching | None = None
-    ) -> tuple[Touching, Status]:
+    def run(self, x: FloatArray, before: Touching | None = None) -> tuple[Touching, Status]:
         """Descend from a loop (n, d) on which no strands overlap.
 
         Or from where one has come to `before`, of a film made elsewhere.

@@ -1,4 +1,4 @@
-"""Newton for a loop with a diameter, whatever film it bounds: down to where strands touch."""
+"""Newton for a loop with a diameter, whatever film it bounds."""
 
 from __future__ import annotations
 

@@ -85,8 +85,8 @@ class HeldGaps:
     ) -> FloatArray:
         """Return the least displacement (n, d) that changes the equations by so much."""
         n, d = shape
-        by_vertex = np.ascontiguousarray(rows.reshape(-1, n, d).transpose(1, 0, 2))
-        moved = (self.strands.compliance @ by_vertex.reshape(n, -1)).reshape(
+        by_vertex: FloatArray = np.ascontiguousarray(rows.reshape(-1, n, d).transpose(1, 0, 2))
+        moved: FloatArray = (self.strands.compliance @ by_vertex.reshape(n, -1)).reshape(
             by_vertex.shape
         )
         moved = moved.transpose(0, 2, 1).reshape(n * d, -1)

@@ -171,10 +171,10 @@ class ContactDescent:
         laid = state.laid[self.strands.unlike(state.laid, changed, ALONG)]
         points, _ = self.strands.at(x, replace(changed, slides=crossing[crossing]))
         after = kept.joined(points[self.strands.distinct(points)])
-        found = self._closed(x, after)
-        if found is None:
+        closed = self._closed(x, after)
+        if closed is None:
             return None
-        return self._at(found, after, laid, state.radius, state.iteration + 1)
+        return self._at(*closed, laid, state.radius, state.iteration + 1)
 
     def _parted(self, state: Touching) -> Touching | None:
         """Return the state with points where strands overlap between two vertices' gaps.
@@ -189,8 +189,8 @@ class ContactDescent:
             return None
         kept = gaps.slides | self.strands.unlike(gaps, points, 1.05)
         after = gaps[kept].joined(points)
-        found = self._closed(x, after)
-        return None if found is None else self._with(state, found, after, state.radius)
+        closed = self._closed(x, after)
+        return None if closed is None else self._with(state, *closed, state.radius)
 
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
@@ -223,12 +223,12 @@ class ContactDescent:
 
         And the change of energy that rounding can show. None if strands would pass.
         """
-        x, gaps = state.model.x, state.gaps
-        after: FloatArray | None = x + moved
+        x, after, gaps = state.model.x, state.model.x + moved, state.gaps
         for _ in range(_ROUNDS):
-            after = self._closed(after, gaps)
-            if after is None or passed(x, after):
+            closed = self._closed(after, gaps)
+            if closed is None or passed(x, closed[0]):
                 return None
+            after, gaps = closed
             amended = self._amended(after, gaps, state.beside)
             if amended is None:
                 return None
@@ -238,16 +238,24 @@ class ContactDescent:
             gaps = amended
         return None
 
-    def _closed(self, x: FloatArray, gaps: Gaps) -> FloatArray | None:
-        """Return the loop next to x with gaps closed, if they then stay where they are."""
-        found = self.held(gaps).project(x)
-        if found is None or not len(gaps):
-            return found
-        try:
-            after, _ = self.strands.at(found, gaps)
-        except LinAlgError:
-            return None
-        return found if self.strands.distinct(after).all() else None
+    def _closed(self, x: FloatArray, gaps: Gaps) -> tuple[FloatArray, Gaps] | None:
+        """Return the loop next to x with gaps closed, and them: those that met count once.
+
+        None if they cannot be.
+        """
+        for _ in range(len(gaps) + 1):
+            found = self.held(gaps).project(x)
+            if found is None:
+                return None
+            try:
+                after, _ = self.strands.at(found, gaps)
+            except LinAlgError:
+                return None
+            distinct = self.strands.distinct(after)
+            if distinct.all():
+                return found, gaps
+            gaps = gaps[distinct]
+        return None
 
     def _amended(self, x: FloatArray, gaps: Gaps, beside: Gaps) -> Gaps | None:
         """Return the gaps to be closed where strands overlap: the same where they do not.
@@ -271,34 +279,41 @@ class ContactDescent:
         """
         x, free, stopped, part = state.model.x, 0.0, 1.0, 1.0
         for _ in range(_HALVINGS):
-            straight, gaps = self._closed(x + part * moved, state.gaps), None
-            if straight is not None and not passed(x, straight):
-                gaps = self._amended(straight, state.gaps, state.beside)
-            if gaps is state.gaps:
+            straight = self._closed(x + part * moved, state.gaps)
+            found = None if straight is None else self._stopped_at(state, *straight)
+            if found is not None:
+                return found
+            if straight is not None and self._is_free(state, *straight):
                 if part == 1.0:
                     return None
                 free = part
             else:
-                found = self._stopped_at(state, straight, gaps)
-                if found is not None:
-                    return found
                 stopped = part
             part = 0.5 * (free + stopped)
         return None
 
+    def _is_free(self, state: Touching, x: FloatArray, gaps: Gaps) -> bool:
+        """Return whether no strands overlap on a loop that a step has led to."""
+        if passed(state.model.x, x):
+            return False
+        return self._amended(x, gaps, state.beside) is gaps
+
     def _stopped_at(
-        self, state: Touching, x: FloatArray | None, gaps: Gaps | None
+        self, state: Touching, straight: FloatArray, gaps: Gaps
     ) -> Touching | None:
         """Return the state where strands touch that overlap on a loop, if that is lower."""
-        if x is None or gaps is None:
+        x = state.model.x
+        amended = None if passed(x, straight) else self._amended(straight, gaps, state.beside)
+        if amended is None or amended is gaps:
             return None
-        before, found = state.model.x, self._closed(x, gaps)
-        if found is None or passed(before, found):
+        closed = self._closed(straight, amended)
+        if closed is None or len(closed[1]) < len(amended):
             return None
-        if self._amended(found, gaps, state.beside) is not gaps:
+        found, gaps = closed
+        if not self._is_free(state, found, gaps):
             return None
-        gained = change_of_energy(self.energy, before, found)
-        noise = noise_of(self.energy, before, found - before, state.model.tensions)
+        gained = change_of_energy(self.energy, x, found)
+        noise = noise_of(self.energy, x, found - x, state.model.tensions)
         if gained is None or gained > max(noise, CLOSED * state.uncertain):
             return None
         return self._with(state, found, gaps, state.radius)

@@ -217,8 +217,10 @@ def _by_columns(
     m = len(rows)
     normals = np.hstack([(rows / scale).T, free * scale[:, None]])
     q, r = np.linalg.qr(normals, mode="complete")
-    tensions = -np.linalg.solve(r[:m, :m], q[:, :m].T @ weighted)
-    basis = q[:, m + free.shape[1] :]
+    # What is along free motions is not for tensions to balance.
+    known = m + free.shape[1]
+    tensions = -np.linalg.solve(r[:known], q[:, :known].T @ weighted)[:m]
+    basis = q[:, known:]
     gradient = basis.T @ weighted
     unbalanced = basis @ gradient * scale
     return Columns(basis, scale), tensions, gradient, unbalanced.reshape(x.shape)

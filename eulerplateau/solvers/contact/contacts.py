@@ -12,7 +12,7 @@ from eulerplateau.loop import Strands
 from eulerplateau.solvers.contact.descent import Touching
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Contacts:
     """The contacts of a loop: k of them, lengths in units of L, forces in alpha / L^2.
 
@@ -45,6 +45,10 @@ class Contacts:
     def __len__(self) -> int:
         """Return k."""
         return len(self.s)
+
+    def __repr__(self) -> str:
+        """Return one line: how many contacts, and their force."""
+        return f"<Contacts: {len(self)}, force {self.force:.6g}>"
 
     @property
     def force(self) -> float:

@@ -1,0 +1,139 @@
+"""A loop with a diameter: forces as slopes of the energy, line contact, what is refused."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.errors import SpecError
+from eulerplateau.loop import strands_of
+from eulerplateau.mesh import Disk
+from eulerplateau.solvers import Equilibrium, Problem, Status, solve
+from eulerplateau.solvers.contact.separation import separated, thinnest
+from tests.helpers import shapes
+
+# Loads at which two strands of an elongated film have crossed, and touch at one point.
+LOADS = {"springs": 1000.0, "dirichlet": 4000.0, "area": 2000.0}
+
+
+@cache
+def disk(rings: int = 8, jitter: float = 0.0) -> Disk:
+    points, triangles = shapes.disk_points(rings, jitter)
+    return shapes.mesh_of(points * [1.6, 1.0], triangles)
+
+
+def crossed(mesh: Disk, turns: float = 0.6) -> FloatArray:
+    """The mesh with one half turned against the other: strands cross in its middle."""
+    x = mesh.x - mesh.x.mean(axis=0)
+    angle = np.pi * turns * np.tanh(x[:, 0] / (0.35 * np.abs(x[:, 0]).max()))
+    return np.stack([x[:, 0], x[:, 1] * np.cos(angle), x[:, 1] * np.sin(angle)], axis=1)
+
+
+@cache
+def eight(film: str, diameter: float, rings: int = 8) -> Equilibrium:
+    mesh = disk(rings)
+    return solve(Problem(mesh, film, diameter=diameter), LOADS[film], crossed(mesh))
+
+
+@pytest.mark.parametrize("film", LOADS)
+def test_strands_that_touch_push_with_the_energy_s_slope_in_the_diameter(film: str) -> None:
+    found = eight(film, 0.05)
+    assert found.is_minimum
+    assert found.residual < 1e-7
+    assert found.contacts is not None
+    assert len(found.contacts) == 1
+    assert found.contacts.at_a_point.all()
+    assert found.contacts.force > 1.0
+    assert abs(found.contacts.smallest_gap) < 1e-10
+
+    def energy(diameter: float) -> float:
+        problem = Problem(disk(), film, diameter=diameter)
+        near = solve(problem, LOADS[film], found)
+        assert near.is_minimum
+        return near.energy
+
+    step = 1e-3
+    wide = (energy(0.05 + step) - energy(0.05 - step)) / (2 * step)
+    near = (energy(0.05 + step / 2) - energy(0.05 - step / 2)) / step
+    assert found.contacts.force == pytest.approx((4 * near - wide) / 3, rel=1e-5)
+
+
+@pytest.mark.parametrize("film", ["dirichlet", "area"])
+def test_a_film_in_contact_is_not_pinched_and_balances(film: str) -> None:
+    found = eight(film, 0.02)
+    assert found.status is Status.CONVERGED
+    assert found.contacts is not None
+    assert found.contacts.force > 0
+    assert found.contacts.forces.min() > 0
+    assert found.contacts.smallest_gap > -1e-10
+    # The pushes on the two strands cancel.
+    np.testing.assert_allclose(found.contacts.pushes.sum(axis=0), 0.0, atol=1e-9)
+
+
+def test_strands_that_overlap_are_parted_first_and_the_energy_falls_from_there() -> None:
+    mesh, diameter = disk(), 0.05
+    thin = eight("dirichlet", 0.01)
+    problem = Problem(mesh, "dirichlet", diameter=diameter)
+    strands = strands_of(problem.loop)
+    assert thinnest(strands, thin.shape.x_loop) < 0.5 * diameter
+    parted = separated(strands, thin.shape.x_loop)
+    assert parted is not None
+    assert thinnest(strands, parted) > diameter - 1e-10
+    energy = problem.film.of_loop(mesh.shape).energy(problem.loop, LOADS["dirichlet"])
+    found = solve(problem, LOADS["dirichlet"], thin)
+    assert energy.change(parted, found.shape.x_loop - parted) < 0
+
+
+@pytest.fixture(scope="module")
+def flat() -> tuple[Problem, Equilibrium]:
+    """A film in its plane whose strands lie along each other at the waist."""
+    problem = Problem(disk(20), "area", in_plane=True, diameter=0.05)
+    return problem, solve(problem, 6000.0, solve(problem, 3000.0))
+
+
+def test_along_a_line_of_contact_the_film_s_pull_is_carried_vertex_by_vertex(
+    flat: tuple[Problem, Equilibrium],
+) -> None:
+    problem, found = flat
+    assert found.is_minimum
+    contacts = found.contacts
+    assert contacts is not None
+    assert not contacts.at_a_point.any()
+    order = np.argsort(contacts.s)
+    assert len(order) >= 7
+    # On a straight strand sigma per length; the ends carry the rod's shear force as well.
+    inside = contacts.forces[order][3:-3]
+    pulled = 6000.0 * problem.loop.rest_lengths.mean()
+    np.testing.assert_allclose(inside, pulled, rtol=0.02)
+
+
+def test_the_force_on_a_line_of_contact_is_the_energy_s_slope_too(
+    flat: tuple[Problem, Equilibrium],
+) -> None:
+    problem, found = flat
+    assert found.contacts is not None
+
+    def energy(diameter: float) -> float:
+        other = Problem(problem.disk, "area", in_plane=True, diameter=diameter)
+        return solve(other, 6000.0, found).energy
+
+    slope = (energy(0.0501) - energy(0.0499)) / 2e-4
+    assert found.contacts.force == pytest.approx(slope, rel=1e-3)
+
+
+def test_a_loop_that_bends_more_than_its_rod_can_is_too_thick() -> None:
+    # Springs draw the disk's loop to lobes that are sharper than 2 / d.
+    problem = Problem(disk(), "dirichlet", diameter=0.1)
+    found = solve(problem, 8000.0, crossed(disk()), max_iterations=40)
+    bends = problem.loop.is_too_thick(found.shape.x_loop)
+    assert bends
+    assert found.status is Status.TOO_THICK
+
+
+@pytest.mark.parametrize("diameter", [0.0, -0.01, 0.11, float("nan")])
+def test_a_diameter_out_of_range_is_refused(diameter: float) -> None:
+    with pytest.raises(SpecError, match="diameter"):
+        Problem(disk(), "springs", diameter=diameter)

@@ -43,9 +43,9 @@ _HALVINGS = 16
 _ASKED = 1e-3
 _PULLS = 1e-9
 # By which part of the diameter strands may overlap between vertices at which they are held
-# along each other; and how often that is mended.
+# along each other; and how often that is mended, or strands that part are held at points.
 _BETWEEN = 1e-3
-_CHANGES = 6
+_CHANGES = 8
 
 
 @dataclass(frozen=True)
@@ -102,8 +102,11 @@ class ContactDescent:
         changes = 0
         while state.iteration < self.max_iterations:
             heed()
-            if (other := self._let_go(state) or self._crossing(state)) is not None:
-                state = other
+            if (fewer := self._let_go(state)) is not None:
+                state = fewer
+                continue
+            if changes < _CHANGES and (other := self._crossing(state)) is not None:
+                state, changes = other, changes + 1
                 continue
             if at_rounding(state.model) and stability(state.model).n_unstable == 0:
                 other = self._parted(state) if changes < _CHANGES else None

@@ -85,7 +85,9 @@ class HeldGaps:
     ) -> FloatArray:
         """Return the least displacement (n, d) that changes the equations by so much."""
         n, d = shape
-        by_vertex: FloatArray = np.ascontiguousarray(rows.reshape(-1, n, d).transpose(1, 0, 2))
+        by_vertex: FloatArray = np.ascontiguousarray(
+            rows.reshape(-1, n, d).transpose(1, 0, 2)
+        )
         moved: FloatArray = (self.strands.compliance @ by_vertex.reshape(n, -1)).reshape(
             by_vertex.shape
         )

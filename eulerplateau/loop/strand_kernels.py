@@ -250,14 +250,14 @@ def nearest_to_places(
     x: FloatArray,
     pieces: FloatArray,
     knots: FloatArray,
-    offset: float,
+    offsets: FloatArray,
     reach: float,
     apart: float,
 ) -> FloatArray:
     """Return where strands ahead are closest to places: rows s, t, D, s', t', d2D/ds2.
 
-    There is a place s on every edge, in parts of it at `offset`; t > s, D below reach. At
-    (s', t') near by the distance is least by both; d2D/ds2 is what it is there.
+    There is a place s on every edge, in parts of it at `offsets` (n,); t > s, D below
+    reach. At (s', t') near by the distance is least by both; d2D/ds2 is that there.
     """
     n, d = x.shape
     whole = float(knots[n])
@@ -265,7 +265,7 @@ def nearest_to_places(
     count = 0
     for i in range(n):
         first = count
-        start = float(knots[i] + offset * (knots[i + 1] - knots[i]))
+        start = float(knots[i] + offsets[i] * (knots[i + 1] - knots[i]))
         place(pieces, knots, start, here)
         for j in range(i + 1, n):
             ahead = float(knots[j + 1] - knots[i])

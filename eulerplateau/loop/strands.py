@@ -42,6 +42,8 @@ _STAYS = 0.5
 _BESIDE = 0.75
 # Edges within which strands that lie along each other do so.
 ALONG = 2.5
+# Parts of an edge by which places along a stretch may be off.
+_EVEN = 0.02
 # By how many edges the places of a gap may move while it is followed.
 _FOLLOWED = 5.0
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
@@ -160,8 +162,8 @@ class Strands:
         pairs = nearest_pairs(x, pieces, self.knots, within, self.apart)
         points = Gaps(pairs[:, 0], pairs[:, 1], np.ones(len(pairs), dtype=bool))
         crossing = (pairs[:, 3] >= _PARTING) & self.unlike(points, beside, ALONG)
-        offset = self._offset(beside)
-        rows = nearest_to_places(x, pieces, self.knots, offset, within, self.apart)
+        offsets = self._offsets(beside)
+        rows = nearest_to_places(x, pieces, self.knots, offsets, within, self.apart)
         held = np.zeros(len(rows), dtype=bool)
         least = Gaps(rows[:, 3], rows[:, 4], held)
         along = (rows[:, 5] < _PARTING) | ~self.unlike(least, beside, ALONG)
@@ -170,13 +172,46 @@ class Strands:
         found = np.vstack([pairs[:, :3], rows[:, :3]])
         return Gaps(found[:, 0], found[:, 1], slides), found[:, 2] - self.diameter
 
-    def _offset(self, beside: Gaps) -> float:
-        """Return where on its edge the first of some places is, in parts of the edge."""
+    def _offsets(self, beside: Gaps) -> FloatArray:
+        """Return where strands are looked at on each edge, in parts of it (n,).
+
+        Where on its edge the nearest of some places is.
+        """
+        n, whole = len(self.loop.rest_lengths), self.knots[-1]
         if not len(beside):
-            return 0.0
-        s = float(beside.s[0] % self.knots[-1])
-        edge = int(np.searchsorted(self.knots, s, side="right")) - 1
-        return float((s - self.knots[edge]) / self.loop.rest_lengths[edge])
+            return np.zeros(n)
+        s = beside.s % whole
+        edge = np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, n - 1)
+        parts = (s - self.knots[edge]) / self.loop.rest_lengths[edge]
+        off = np.abs(self.knots[:-1, None] - s)
+        nearest = np.minimum(off, whole - off).argmin(axis=1)
+        offsets: FloatArray = parts[nearest]
+        return offsets
+
+    def evenly(self, gaps: Gaps, forces: FloatArray) -> Gaps | None:
+        """Return gaps where strands lie along each other, an edge from each other.
+
+        The middle of each stretch, by the forces (k,), is one of the places, so that they
+        are the same whatever the way there was. None if all are where they should be.
+        """
+        beside = np.flatnonzero(~gaps.slides)
+        order = beside[np.argsort(gaps.s[beside])]
+        number = np.arange(len(self.knots), dtype=np.float64)
+        at, facing = (np.interp(each, self.knots, number) for each in (gaps.s, gaps.t))
+        steps = np.maximum(np.diff(at[order]), np.abs(np.diff(facing[order])))
+        stretches = np.split(order, np.flatnonzero(steps > ALONG) + 1)
+        laid, moved = gaps[gaps.slides], False
+        for stretch in stretches:
+            edges, t, push = at[stretch], gaps.t[stretch], np.maximum(forces[stretch], 0.0)
+            if len(stretch) > 1 and push.any():
+                middle = float(push @ edges / push.sum())
+                first, last = np.round(edges[[0, -1]] - middle)
+                even = middle + np.arange(first, last + 1)
+                if len(even) != len(edges) or np.abs(even - edges).max() > _EVEN:
+                    t, edges, moved = np.interp(even, edges, t), even, True
+            s = np.interp(edges % number[-1], number, self.knots)
+            laid = laid.joined(Gaps(s, t, np.zeros(len(s), dtype=bool)))
+        return laid if moved else None
 
     def unlike(self, gaps: Gaps, others: Gaps, edges: float = _BESIDE) -> BoolArray:
         """Return which of `gaps` (k,) are farther from others than that, on a strand."""

@@ -109,7 +109,9 @@ class ContactDescent:
                 state, changes = other, changes + 1
                 continue
             if at_rounding(state.model) and stability(state.model).n_unstable == 0:
-                other = self._parted(state) if changes < _CHANGES else None
+                other = None
+                if changes < _CHANGES:
+                    other = self._parted(state) or self._laid_evenly(state)
                 if other is None:
                     return state, Status.CONVERGED
                 state, changes = other, changes + 1
@@ -194,6 +196,16 @@ class ContactDescent:
         after = gaps[kept].joined(points)
         closed = self._closed(x, after)
         return None if closed is None else self._with(state, *closed, state.radius)
+
+    def _laid_evenly(self, state: Touching) -> Touching | None:
+        """Return the state with strands held along each other at even places, else None."""
+        after = self.strands.evenly(state.gaps, state.forces)
+        closed = None if after is None else self._closed(state.model.x, after)
+        if closed is None:
+            return None
+        x, gaps = closed
+        radius, iteration = state.radius, state.iteration + 1
+        return self._at(x, gaps, NO_GAPS, radius, iteration)
 
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
@@ -306,7 +318,9 @@ class ContactDescent:
     ) -> Touching | None:
         """Return the state where strands touch that overlap on a loop, if that is lower."""
         x = state.model.x
-        amended = None if passed(x, straight) else self._amended(straight, gaps, state.beside)
+        amended = (
+            None if passed(x, straight) else self._amended(straight, gaps, state.beside)
+        )
         if amended is None or amended is gaps:
             return None
         closed = self._closed(straight, amended)

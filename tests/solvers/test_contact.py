@@ -97,7 +97,7 @@ def flat() -> tuple[Problem, Equilibrium]:
 def test_along_a_line_of_contact_the_film_s_pull_is_carried_vertex_by_vertex(
     flat: tuple[Problem, Equilibrium],
 ) -> None:
-    problem, found = flat
+    _, found = flat
     assert found.is_minimum
     contacts = found.contacts
     assert contacts is not None

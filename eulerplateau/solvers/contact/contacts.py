@@ -9,7 +9,7 @@ import numpy as np
 from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import Strands
-from eulerplateau.solvers.contact.descent import Touching
+from eulerplateau.solvers.contact.keeping import Touching
 
 
 @dataclass(frozen=True, eq=False, repr=False)

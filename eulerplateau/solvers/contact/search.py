@@ -13,7 +13,8 @@ from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.contact.contacts import contacts_of
-from eulerplateau.solvers.contact.descent import ContactDescent, Touching
+from eulerplateau.solvers.contact.descent import ContactDescent
+from eulerplateau.solvers.contact.keeping import Touching
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from math import inf, pi
+from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,7 +26,7 @@ from eulerplateau.exact.planar.halves import (
     Points,
     TouchingHalf,
 )
-from eulerplateau.exact.planar.limits import checked_lobes, thresholds_of
+from eulerplateau.exact.planar.limits import checked_lobes
 from eulerplateau.exact.planar.thickness import (
     TooThickError,
     checked_diameter,
@@ -174,17 +174,16 @@ def _film(lobes: int, tension: float, diameter: float) -> PlanarFilm:
     """Return the film, however sharply its loop is bent."""
     if excess(lobes, tension) <= 0:
         return _disk(lobes, tension, diameter)
-    limits = thresholds_of(lobes, diameter)
-    if tension < min(limits.sigma_contact, thresholds_of(lobes, 0.0).sigma_contact):
-        return _buckled(lobes, tension, diameter)
     width = diameter * tension ** (1 / 3)
-    if limits.sigma_contact == inf or width > WIDEST:
+    if tension < at_first_contact(lobes, min(width, WIDEST)).lobe.sigma:
+        return _buckled(lobes, tension, diameter)
+    if width > WIDEST:
         raise _too_thick(diameter, "its curvature would be larger, were it to touch itself")
-    onset = at_line_contact(lobes, width)
-    if tension < onset.lobe.sigma:
+    opening = at_line_contact(lobes, width)
+    if tension < opening.lobe.sigma:
         parts = touching_at(lobes, tension, width)
         return _touching(lobes, tension, diameter, Regime.POINT_CONTACT, parts)
-    parts = onset.scaled((onset.lobe.sigma / tension) ** (1 / 3))
+    parts = opening.scaled((opening.lobe.sigma / tension) ** (1 / 3))
     return _touching(lobes, tension, diameter, Regime.LINE_CONTACT, parts)
 
 

@@ -29,7 +29,7 @@ _EXACT = 4 * np.finfo(np.float64).eps
 class Thresholds:
     """The loads sigma L^3 / alpha at which the n-lobed film changes its regime.
 
-    Infinite where the loop's curvature exceeds 2/d before.
+    That of a contact is infinite where the loop's curvature would exceed 2/d there.
     """
 
     lobes: int
@@ -58,7 +58,13 @@ def thresholds(lobes: int, diameter: float | None = None) -> Thresholds:
     SpecError
         If an argument is no such number.
     """
-    return thresholds_of(checked_lobes(lobes), checked_diameter(diameter))
+    lobes, diameter = checked_lobes(lobes), checked_diameter(diameter)
+    return Thresholds(
+        lobes,
+        sigma_buckling(lobes),
+        _onset(at_first_contact, lobes, diameter),
+        _onset(at_line_contact, lobes, diameter),
+    )
 
 
 def checked_lobes(lobes: int) -> int:
@@ -67,27 +73,15 @@ def checked_lobes(lobes: int) -> int:
 
 
 @lru_cache(maxsize=256)
-def thresholds_of(lobes: int, diameter: float) -> Thresholds:
-    """Return the thresholds of checked numbers; a diameter of 0 is none."""
-    return Thresholds(
-        lobes,
-        sigma_buckling(lobes),
-        _load(at_first_contact, lobes, diameter),
-        _load(at_line_contact, lobes, diameter),
-    )
-
-
-def _load(shape: Callable[[int, float], Touching], lobes: int, diameter: float) -> float:
+def _onset(shape: Callable[[int, float], Touching], lobes: int, diameter: float) -> float:
     """Return the load at which a loop of this diameter has a shape given by its width."""
 
-    def too_thick(width: float) -> float:
+    def too_wide(width: float) -> float:
         size: float = shape(lobes, width).lobe.sigma ** (1 / 3)
         return width / size - diameter
 
-    if too_thick(WIDEST) <= 0:
+    if too_wide(WIDEST) <= 0:
         return inf
-    width = brentq(too_thick, 0.0, WIDEST, xtol=1e-300, rtol=_EXACT)
-    parts = shape(lobes, width)
-    if is_too_thick(parts.kappa_max, parts.kappa_min, diameter):
-        return inf
-    return parts.lobe.sigma
+    parts = shape(lobes, brentq(too_wide, 0.0, WIDEST, xtol=1e-300, rtol=_EXACT))
+    too_thick = is_too_thick(parts.kappa_max, parts.kappa_min, diameter)
+    return inf if too_thick else parts.lobe.sigma

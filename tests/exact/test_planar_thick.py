@@ -256,6 +256,20 @@ def test_a_loop_is_too_thick_beyond_the_diameter_at_which_it_bends_to_two_over_d
     assert max(film.kappa_max, -film.kappa_min) * low == pytest.approx(2, rel=2e-4)
 
 
+@pytest.mark.parametrize(("n", "diameter"), [(2, 0.09), (3, 0.06), (8, 0.018)])
+def test_contacts_begin_at_a_threshold_or_are_not_there_at_all(
+    n: int, diameter: float
+) -> None:
+    limits, seen = thresholds(n, diameter), set()
+    for load in np.geomspace(limits.sigma_buckling, 30 * limits.sigma_buckling, 12):
+        try:
+            seen.add(planar_film(n, load, diameter).regime.contact)
+        except TooThickError:
+            continue
+    onsets = {"point": limits.sigma_contact, "line": limits.sigma_line_contact}
+    assert seen == {"free", *(name for name, load in onsets.items() if load < inf)}
+
+
 @pytest.mark.parametrize("n", [2, 3, 7, 12])
 def test_thresholds_fall_with_the_diameter_until_the_loop_is_too_thick(n: int) -> None:
     rows = [thresholds(n, d) for d in (1e-3, 3e-3, 0.01, 0.03, 0.1)]

@@ -32,7 +32,7 @@ def planar() -> None:
 def table(diameter: float | None, as_json: bool) -> None:
     """Print where n-lobed films buckle, touch in a point, and touch along a line.
 
-    With a diameter "-", in JSON null, stands where the loop's curvature exceeds 2/d before.
+    With a diameter "-", in JSON null, stands where the curvature would exceed 2/d there.
     """
     from dataclasses import asdict
     from math import isfinite

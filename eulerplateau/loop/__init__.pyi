@@ -6,6 +6,7 @@ from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
 from .frames import Frame as Frame, directors as directors
 from .free_bending import FreeBending as FreeBending
+from .gaps import NO_GAPS as NO_GAPS, Gaps as Gaps
 from .held_gaps import HeldGaps as HeldGaps
 from .lengths import (
     Lengths as Lengths,
@@ -32,8 +33,6 @@ from .motions import (
 from .rod import Rod as Rod
 from .strands import (
     ALONG as ALONG,
-    NO_GAPS as NO_GAPS,
-    Gaps as Gaps,
     Strands as Strands,
     strands_of as strands_of,
 )

@@ -9,7 +9,8 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.energy import Constraint
-from eulerplateau.loop.strands import Gaps, Strands
+from eulerplateau.loop.gaps import Gaps
+from eulerplateau.loop.strands import Strands
 
 _STEPS = 30
 _SMALL = 1e-12
@@ -29,20 +30,20 @@ class HeldGaps:
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Return the equations' derivatives (n + k, d n)."""
         at, _ = self.strands.at(x, self.gaps)
-        return np.vstack([self.lengths.jacobian(x), self.strands.jacobian(x, at)])
+        return np.vstack([self.lengths.jacobian(x), self.strands.between(x, at).jacobian()])
 
     def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return J^T tensions (n, d)."""
         n = len(x)
         at, _ = self.strands.at(x, self.gaps)
-        push = tensions[n:] @ self.strands.jacobian(x, at)
+        push = tensions[n:] @ self.strands.between(x, at).jacobian()
         return self.lengths.force(x, tensions[:n]) + push.reshape(x.shape)
 
     def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the second derivative (d n, d n) of tensions . c."""
         n, d = x.shape
         at, _ = self.strands.at(x, self.gaps)
-        whole = self.strands.hessian(x, at, tensions[n:])
+        whole = self.strands.between(x, at).hessian(tensions[n:], at.slides)
         shared = self.lengths.stiffness(x, tensions[:n])
         blocks = whole.reshape(n, d, n, d)
         for axis in range(d):
@@ -72,7 +73,9 @@ class HeldGaps:
                 error, before = float(np.abs(excess / size).max()), error
                 if error < 1e-15 or (error < _SMALL and error >= 0.25 * before):
                     return x
-                rows = np.vstack([self.lengths.jacobian(x), self.strands.jacobian(x, at)])
+                rows = np.vstack(
+                    [self.lengths.jacobian(x), self.strands.between(x, at).jacobian()]
+                )
                 x = x - self._closing(rows, excess, x.shape)
             except LinAlgError:
                 return None

@@ -163,16 +163,24 @@ def _nearest_nearby(x: FloatArray, i: int, j: int, distance: float, most: float)
 
 
 @njit(cache=True)
-def _near_chords(x: FloatArray, i: int, j: int, reach: float, slack: float) -> bool:
-    """Whether the edges i and j may come within reach: by their middles."""
+def _may_touch(
+    x: FloatArray,
+    knots: FloatArray,
+    i: int,
+    j: int,
+    reach: float,
+    slack: float,
+    apart: float,
+) -> bool:
+    """Whether edges i < j may come within reach, by their middles, far enough along."""
     n = x.shape[0]
-    i1, j1 = (i + 1) % n, (j + 1) % n
-    square, first, second = 0.0, 0.0, 0.0
+    if knots[j + 1] - knots[i] < apart or knots[n] - knots[j] + knots[i + 1] < apart:
+        return False
+    i1, j1 = i + 1, (j + 1) % n
+    square = 0.0
     for k in range(x.shape[1]):
         square += 0.25 * (x[i, k] + x[i1, k] - x[j, k] - x[j1, k]) ** 2
-        first += (x[i1, k] - x[i, k]) ** 2
-        second += (x[j1, k] - x[j, k]) ** 2
-    lengths = np.sqrt(first) + np.sqrt(second)
+    lengths = knots[i1] - knots[i] + knots[j + 1] - knots[j]
     return bool(square < (reach + 0.5 * slack * lengths) ** 2)
 
 
@@ -186,6 +194,16 @@ def _nearest_on_chord(x: FloatArray, point: FloatArray, j: int) -> float:
         along += v * (point[k] - x[j, k])
         square += v * v
     return along / square
+
+
+@njit(cache=True)
+def _is_listed(found: FloatArray, count: int, s: float, t: float, whole: float) -> bool:
+    """Whether a pair of places is among the first rows of those that were found."""
+    for m in range(count):
+        off = max(_apart(s, found[m, 0], whole), _apart(t, found[m, 1], whole))
+        if off < _SAME * whole:
+            return True
+    return False
 
 
 @njit(cache=True)
@@ -216,10 +234,7 @@ def nearest_pairs(
     count = 0
     for i in range(n):
         for j in range(i + 2, n):
-            ahead = float(knots[j + 1] - knots[i])
-            if ahead < apart or whole - float(knots[j] - knots[i + 1]) < apart:
-                continue
-            if not _near_chords(x, i, j, reach, _SLACK):
+            if not _may_touch(x, knots, i, j, reach, _SLACK, apart):
                 continue
             a, b, distance = _closest_on_chords(x, i, j)
             if not _nearest_nearby(x, i, j, distance, most):
@@ -231,11 +246,7 @@ def nearest_pairs(
                 continue
             s, t = s - whole * np.floor(s / whole), t - whole * np.floor(t / whole)
             s, t = min(s, t), max(s, t)
-            known = False
-            for m in range(count):
-                off = max(_apart(s, found[m, 0], whole), _apart(t, found[m, 1], whole))
-                known = known or bool(off < _SAME * whole)
-            if known:
+            if _is_listed(found, count, s, t, whole):
                 continue
             if count == found.shape[0]:
                 found = np.concatenate((found, np.empty((count, 4))))
@@ -264,14 +275,10 @@ def nearest_to_places(
     found, here = np.empty((16, 6)), np.empty((3, d))
     count = 0
     for i in range(n):
-        first = count
         start = float(knots[i] + offsets[i] * (knots[i + 1] - knots[i]))
         place(pieces, knots, start, here)
         for j in range(i + 1, n):
-            ahead = float(knots[j + 1] - knots[i])
-            if ahead < apart or whole - float(knots[j] - knots[i + 1]) < apart:
-                continue
-            if not _near_chords(x, i, j, reach, 2.0 * _SLACK):
+            if not _may_touch(x, knots, i, j, reach, 2.0 * _SLACK, apart):
                 continue
             b = _nearest_on_chord(x, here[0], j)
             if b < -_SLACK or b > 1.0 + _SLACK:
@@ -281,10 +288,7 @@ def nearest_to_places(
             t = t - whole * np.floor(t / whole)
             if not distance < reach or _apart(s, t, whole) < apart or t < s:
                 continue
-            known = False
-            for m in range(first, count):
-                known = known or bool(_apart(t, found[m, 1], whole) < _SAME * whole)
-            if known:
+            if _is_listed(found, count, s, t, whole):
                 continue
             if count == found.shape[0]:
                 found = np.concatenate((found, np.empty((count, 6))))

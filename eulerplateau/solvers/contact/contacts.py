@@ -64,18 +64,18 @@ class Contacts:
 def contacts_of(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
     """Return the contacts of a loop that a descent has come to."""
     x, gaps = state.model.x, state.gaps
-    curve = strands.curve(x)
+    curve, between = strands.curve(x), strands.between(x, gaps)
     places = np.stack([curve(gaps.s), curve(gaps.t)])
     _, widths = strands.at(x, gaps)
     _, near = strands.near(x, 0.5 * strands.diameter)
-    pushes = -state.forces @ strands.jacobian(x, gaps)
+    pushes = -state.forces @ between.jacobian()
     return Contacts(
         s=gaps.s,
         t=gaps.t,
         points=np.stack([film.lift(each) for each in places]),
         forces=state.forces,
         gaps=widths,
-        angles=strands.angles(x, gaps),
+        angles=between.angles(),
         at_a_point=gaps.slides,
         uncertain=state.uncertain,
         pushes=film.lift(pushes.reshape(x.shape)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
@@ -11,6 +11,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.energy import Constraint
 from eulerplateau.loop.gaps import Gaps
 from eulerplateau.loop.strands import Strands
+from eulerplateau.loop.turns import EdgeTurns
 
 _STEPS = 30
 _SMALL = 1e-12
@@ -50,12 +51,24 @@ class HeldGaps:
             blocks[:, axis, :, axis] += shared
         return whole
 
-    def turns(self, x: FloatArray) -> None:
-        """Return None: gaps are not kept by turning edges."""
+    def turns(self, x: FloatArray) -> EdgeTurns | None:
+        """Return the turns of the edges, with how they change the gaps."""
+        turns = self.lengths.turns(x)
+        if turns is None or not len(self.gaps):
+            return turns
+        at, _ = self.strands.at(x, self.gaps)
+        return replace(turns, others=self.strands.between(x, at).jacobian())
 
-    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
-        """Return no stiffness."""
-        return np.zeros(0)
+    def split_stiffness(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray | None, FloatArray]:
+        """Return what the gaps add by positions, and tensions / s (n,) by edges."""
+        n = len(x)
+        _, by_edges = self.lengths.split_stiffness(x, tensions[:n])
+        if not len(self.gaps):
+            return None, by_edges
+        at, _ = self.strands.at(x, self.gaps)
+        return self.strands.between(x, at).hessian(tensions[n:], at.slides), by_edges
 
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return a loop near by that keeps lengths and gaps, to rounding; None if lost.

@@ -164,13 +164,7 @@ def _nearest_nearby(x: FloatArray, i: int, j: int, distance: float, most: float)
 
 @njit(cache=True)
 def _may_touch(
-    x: FloatArray,
-    knots: FloatArray,
-    i: int,
-    j: int,
-    reach: float,
-    slack: float,
-    apart: float,
+    x: FloatArray, knots: FloatArray, i: int, j: int, reach: float, apart: float
 ) -> bool:
     """Whether edges i < j may come within reach, by their middles, far enough along."""
     n = x.shape[0]
@@ -181,7 +175,7 @@ def _may_touch(
     for k in range(x.shape[1]):
         square += 0.25 * (x[i, k] + x[i1, k] - x[j, k] - x[j1, k]) ** 2
     lengths = knots[i1] - knots[i] + knots[j + 1] - knots[j]
-    return bool(square < (reach + 0.5 * slack * lengths) ** 2)
+    return bool(square < (reach + 0.5 * _SLACK * lengths) ** 2)
 
 
 @njit(cache=True)
@@ -234,7 +228,7 @@ def nearest_pairs(
     count = 0
     for i in range(n):
         for j in range(i + 2, n):
-            if not _may_touch(x, knots, i, j, reach, _SLACK, apart):
+            if not _may_touch(x, knots, i, j, reach, apart):
                 continue
             a, b, distance = _closest_on_chords(x, i, j)
             if not _nearest_nearby(x, i, j, distance, most):
@@ -278,7 +272,7 @@ def nearest_to_places(
         start = float(knots[i] + offsets[i] * (knots[i + 1] - knots[i]))
         place(pieces, knots, start, here)
         for j in range(i + 1, n):
-            if not _may_touch(x, knots, i, j, reach, 2.0 * _SLACK, apart):
+            if not _may_touch(x, knots, i, j, reach, apart):
                 continue
             b = _nearest_on_chord(x, here[0], j)
             if b < -_SLACK or b > 1.0 + _SLACK:

@@ -1,5 +1,6 @@
 from .adhesions import Adhesions as Adhesions
 from .bending import Bending as Bending, inextensible as inextensible
+from .contacts import Contacts as Contacts
 from .curved_rod import CurvedRod as CurvedRod
 from .edges import Edges as Edges, edges_of as edges_of
 from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy

@@ -15,8 +15,9 @@ touch where the curvature is below 2 / d.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import pi
 
 import numpy as np
@@ -36,6 +37,8 @@ from eulerplateau.loop.strand_kernels import (
 # a loop's curvature is 2 pi. One that touches at a point does so until half of that.
 _PARTING = 2.0
 _STAYS = 0.5
+# How much nearer chords may be than their curves are, in curvatures times squared edges.
+_SAGGING = 0.5
 # Parts of an edge within which two gaps are the same, or depend on each other.
 _BESIDE = 0.75
 # Edges within which strands that lie along each other do so.
@@ -103,14 +106,17 @@ class Strands:
         where the first of them is on its own.
         """
         x = np.ascontiguousarray(x)
-        pieces, within = self._pieces(x), self.diameter + reach
-        pairs = nearest_pairs(x, pieces, self.knots, within, self.apart)
+        limits = self.diameter + reach, self.apart
+        pieces = self._pieces(x)
+        curve = x, pieces, self.knots
+        bends = 2 * np.linalg.norm(pieces[:, 1], axis=1) * self.loop.rest_lengths**2
+        sagging = _SAGGING * float(bends.max())
+        pairs = _rows(partial(nearest_pairs, *curve, *limits, sagging), 4)
         points = Gaps(pairs[:, 0], pairs[:, 1], np.ones(len(pairs), dtype=bool))
         crossing = (pairs[:, 3] >= _PARTING) & self.unlike(points, beside, ALONG)
-        offsets = self._offsets(beside)
-        rows = nearest_to_places(x, pieces, self.knots, offsets, within, self.apart)
-        held = np.zeros(len(rows), dtype=bool)
-        least = Gaps(rows[:, 3], rows[:, 4], held)
+        looked_for = partial(nearest_to_places, *curve, self._offsets(beside), *limits)
+        rows = _rows(looked_for, 6)
+        least = Gaps(rows[:, 3], rows[:, 4], np.zeros(len(rows), dtype=bool))
         along = (rows[:, 5] < _PARTING) | ~self.unlike(least, beside, ALONG)
         rows, pairs = rows[along & (rows[:, 5] > -np.inf)], pairs[crossing]
         slides = np.arange(len(pairs) + len(rows)) < len(pairs)
@@ -231,3 +237,14 @@ def strands_of(loop: Loop) -> Strands:
     """Return the strands of a loop that has a diameter."""
     assert loop.diameter is not None
     return Strands(loop, loop.diameter, 0.5 * pi * loop.diameter)
+
+
+def _rows(look: Callable[[FloatArray], int], columns: int) -> FloatArray:
+    """Return all rows that a search finds, which is told how many it has room for."""
+    room = 64
+    while True:
+        found = np.empty((room, columns))
+        count = look(found)
+        if count <= room:
+            return found[:count]
+        room = 2 * count

@@ -1,11 +1,13 @@
 from .adhesions import Adhesions as Adhesions
 from .bending import Bending as Bending, inextensible as inextensible
+from .contacts import Contacts as Contacts
 from .curved_rod import CurvedRod as CurvedRod
 from .edges import Edges as Edges, edges_of as edges_of
 from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
 from .frames import Frame as Frame, directors as directors
 from .free_bending import FreeBending as FreeBending
+from .gaps import NO_GAPS as NO_GAPS, Gaps as Gaps
 from .held_gaps import HeldGaps as HeldGaps
 from .lengths import (
     Lengths as Lengths,
@@ -32,8 +34,6 @@ from .motions import (
 from .rod import Rod as Rod
 from .strands import (
     ALONG as ALONG,
-    NO_GAPS as NO_GAPS,
-    Gaps as Gaps,
     Strands as Strands,
     strands_of as strands_of,
 )

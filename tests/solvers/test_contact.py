@@ -140,7 +140,7 @@ def test_a_loop_that_bends_more_than_its_rod_can_is_too_thick() -> None:
     found = solve(problem, 2000.0)
     assert found.status is Status.CONVERGED
     # A racket's head bends as (sigma / 2)^(1/3), and a rod by 2 / d at most.
-    assert solve(problem, 12000.0, found).status is Status.TOO_THICK
+    assert solve(problem, 6000.0, found).status is Status.TOO_THICK
 
 
 @pytest.mark.parametrize("diameter", [0.0, -0.01, 0.11, float("nan")])

@@ -159,7 +159,10 @@ class Keeping:
             return None
         kept, changed = gaps[~crossing], gaps[crossing]
         laid = state.laid[self.strands.unlike(state.laid, changed, ALONG)]
-        points, _ = self.strands.at(x, replace(changed, slides=crossing[crossing]))
+        try:
+            points, _ = self.strands.at(x, replace(changed, slides=crossing[crossing]))
+        except LinAlgError:
+            return None
         points = points[self.strands.distinct(points)]
         return self._changed(state, kept.joined(points), laid)
 

@@ -6,20 +6,19 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import close_with_lengths, strands_of
+from eulerplateau.loop import Contacts, Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers.contact.contacts import contacts_of
 from eulerplateau.solvers.contact.descent import ContactDescent
 from eulerplateau.solvers.contact.keeping import Touching
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import TangentModel, stability
-from eulerplateau.solvers.soap import tied_film
 from eulerplateau.threads import one_thread
 
 # A soap film is sought near the last shape at most so many times in one solve.
@@ -53,7 +52,7 @@ def search(
         if found is not None or problem.film.dimension == 2:
             return found
         # A film tied to the mesh as it was given can be spanned across any loop.
-        tied = tied_film(problem)
+        tied = problem.tied_film()
         if tied is None:
             return None
         energy = tied.energy(problem.loop, load)
@@ -111,7 +110,7 @@ def _record(
     spent: int,
     status: Status,
 ) -> Equilibrium:
-    contacts = contacts_of(strands_of(problem.loop), film, state)
+    contacts = _contacts(strands_of(problem.loop), film, state)
     tensions = state.model.tensions[: len(state.model.x)]
     found = problem.equilibrium(shape, tensions, load, status)
     found = replace(
@@ -121,3 +120,25 @@ def _record(
         residual=problem.residual(shape, tensions, load, contacts.pushes),
     )
     return with_stability(found, stability(state.model))
+
+
+def _contacts(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
+    """Return the contacts of a loop that a descent has come to."""
+    x, gaps = state.model.x, state.gaps
+    curve, between = strands.curve(x), strands.between(x, gaps)
+    places = np.stack([curve(gaps.s), curve(gaps.t)])
+    _, widths = strands.at(x, gaps)
+    _, near = strands.near(x, 0.5 * strands.diameter)
+    pushes = -state.forces @ between.jacobian()
+    return Contacts(
+        s=gaps.s,
+        t=gaps.t,
+        points=np.stack([film.lift(each) for each in places]),
+        forces=state.forces,
+        gaps=widths,
+        angles=between.angles(),
+        at_a_point=gaps.slides,
+        uncertain=state.uncertain,
+        pushes=film.lift(pushes.reshape(x.shape)),
+        smallest_gap=float(near.min(initial=np.inf)),
+    )

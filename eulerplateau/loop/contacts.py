@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from eulerplateau.arrays import BoolArray, FloatArray
-from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import Strands
-from eulerplateau.solvers.contact.keeping import Touching
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,25 +54,3 @@ class Contacts:
     def doubtful(self) -> BoolArray:
         """Which of the forces (k,) cannot be told from none."""
         return self.forces <= self.uncertain
-
-
-def contacts_of(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
-    """Return the contacts of a loop that a descent has come to."""
-    x, gaps = state.model.x, state.gaps
-    curve = strands.curve(x)
-    places = np.stack([curve(gaps.s), curve(gaps.t)])
-    _, widths = strands.at(x, gaps)
-    _, near = strands.near(x, 0.5 * strands.diameter)
-    pushes = -state.forces @ strands.jacobian(x, gaps)
-    return Contacts(
-        s=gaps.s,
-        t=gaps.t,
-        points=np.stack([film.lift(each) for each in places]),
-        forces=state.forces,
-        gaps=widths,
-        angles=strands.angles(x, gaps),
-        at_a_point=gaps.slides,
-        uncertain=state.uncertain,
-        pushes=film.lift(pushes.reshape(x.shape)),
-        smallest_gap=float(near.min(initial=np.inf)),
-    )

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.loop import ALONG, NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 
@@ -143,7 +143,11 @@ class Keeping:
         pushing = state.forces >= -certain
         if pushing.all():
             return None
-        return self.moved(state, state.model.x, state.gaps[pushing])
+        return self.without(state, ~pushing)
+
+    def without(self, state: Touching, let_go: BoolArray) -> Touching:
+        """Return the state with some of its gaps (k,) no longer closed."""
+        return self.moved(state, state.model.x, state.gaps[~let_go])
 
     def crossing(self, state: Touching) -> Touching | None:
         """Return the state with strands touching at points that no longer lie along.

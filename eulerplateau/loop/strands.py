@@ -191,7 +191,8 @@ class Strands:
     def laid_along(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands touch at a point that lie along each other by now."""
         along: BoolArray = self.parting(x, gaps) < _STAYS * _PARTING
-        return gaps.slides & along
+        laid: BoolArray = gaps.slides & along
+        return laid
 
     def crossing(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands lie along each other that touch at a point by now."""
@@ -202,7 +203,8 @@ class Strands:
             ],
             dtype=bool,
         )
-        return ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
+        crossing: BoolArray = ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
+        return crossing
 
     def at(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
         """Return gaps followed to a loop x (n, d), and how wide they are (k,).

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import BoolArray, FloatArray
-from eulerplateau.loop import ALONG, NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands
+from eulerplateau.loop import ALONG, NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands, evenly
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 
 # The residual below which it is asked whether strands pull, and what counts as pulling:
@@ -195,5 +195,5 @@ class Keeping:
 
     def _laid_evenly(self, state: Touching) -> Touching | None:
         """Return the state with strands held along each other at even places, else None."""
-        after = self.strands.evenly(state.gaps, state.forces)
+        after = evenly(self.strands.knots, state.gaps, state.forces)
         return None if after is None else self._changed(state, after, NO_GAPS)

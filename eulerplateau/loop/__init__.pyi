@@ -32,11 +32,8 @@ from .motions import (
     sliding as sliding,
 )
 from .rod import Rod as Rod
-from .strands import (
-    ALONG as ALONG,
-    Strands as Strands,
-    strands_of as strands_of,
-)
+from .strands import Strands as Strands, strands_of as strands_of
+from .stretches import ALONG as ALONG, evenly as evenly
 from .term import LEAST as LEAST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,

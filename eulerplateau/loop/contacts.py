@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.loop.energy import LoopEnergy
+from eulerplateau.loop.gaps import Gaps
+from eulerplateau.loop.held_gaps import HeldGaps
+from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.strands import strands_of
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -24,6 +29,8 @@ class Contacts:
     uncertain : float, what a force can be off by
     pushes : (n_b, 3) float, what the contacts add to the energy's gradient
     smallest_gap : float, of all places, touching or not; infinite beyond half the diameter
+    unstable_let_go : int or None
+        The Morse index with the doubtful contacts let go; None where none is doubtful.
     """
 
     s: FloatArray
@@ -36,6 +43,7 @@ class Contacts:
     uncertain: float
     pushes: FloatArray
     smallest_gap: float
+    unstable_let_go: int | None = None
 
     def __len__(self) -> int:
         """Return k."""
@@ -44,6 +52,16 @@ class Contacts:
     def __repr__(self) -> str:
         """Return one line: how many contacts, and their force."""
         return f"<Contacts: {len(self)}, force {self.force:.6g}>"
+
+    @property
+    def places(self) -> Gaps:
+        """The gaps that are closed."""
+        return Gaps(self.s, self.t, self.at_a_point)
+
+    def held(self, energy: LoopEnergy, loop: Loop) -> LoopEnergy:
+        """Return an energy of the loop with these gaps kept closed."""
+        kept = HeldGaps(energy.constraint, strands_of(loop), self.places)
+        return replace(energy, constraint=kept)
 
     @property
     def force(self) -> float:

@@ -74,7 +74,7 @@ class Between:
     @property
     def _size(self) -> int:
         """Number of coordinates, d n."""
-        return self.weights.shape[1] * self.normals.shape[1]
+        return int(self.weights.shape[1] * self.normals.shape[1])
 
     def hessian(self, shares: FloatArray, slides: BoolArray) -> FloatArray:
         """Return the second derivative (d n, d n) of shares (k,) times the distances.

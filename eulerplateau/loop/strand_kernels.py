@@ -245,10 +245,10 @@ def nearest_to_places(
     apart: float,
     found: FloatArray,
 ) -> int:
-    """Find where strands ahead are closest to places; return how many there are.
+    """Find where other strands are closest to places; return how many there are.
 
     There is a place s on every edge, in parts of it at `offsets` (n,). To rows of `found`
-    (m, 6) go s, t, D, s', t', d2D/ds2; t > s, D below reach; at (s', t') near by the
+    (m, 6) go s, t, D, s', t', d2D/ds2, D below reach; at (s', t') near by the
     distance is least by both, and d2D/ds2 is that there.
     """
     n, d = x.shape
@@ -258,8 +258,8 @@ def nearest_to_places(
     for i in range(n):
         start = float(knots[i] + offsets[i] * (knots[i + 1] - knots[i]))
         place(pieces, knots, start, here)
-        for j in range(i + 1, n):
-            if not _may_touch(x, knots, i, j, reach, apart):
+        for j in range(n):
+            if not _may_touch(x, knots, min(i, j), max(i, j), reach, apart):
                 continue
             b = _nearest_on_chord(x, here[0], j)
             if b < -_SLACK or b > 1.0 + _SLACK:
@@ -267,7 +267,7 @@ def nearest_to_places(
             guess = float(knots[j] + b * (knots[j + 1] - knots[j]))
             s, t, distance, _ = settle(pieces, knots, start, guess, False)
             t = t - whole * np.floor(t / whole)
-            if not distance < reach or _apart(s, t, whole) < apart or t < s:
+            if not distance < reach or _apart(s, t, whole) < apart:
                 continue
             if _is_listed(found, count, s, t, whole):
                 continue

@@ -32,6 +32,7 @@ from eulerplateau.loop.strand_kernels import (
     nearest_to_places,
     settle_each,
 )
+from eulerplateau.loop.stretches import ALONG, of_one_strand, offsets
 
 # Strands touch at a point where they part at least so fast, d2D/ds2 in units of 1 / L:
 # a loop's curvature is 2 pi. One that touches at a point does so until half of that.
@@ -41,10 +42,6 @@ _STAYS = 0.5
 _SAGGING = 0.5
 # Parts of an edge within which two gaps are the same, or depend on each other.
 _BESIDE = 0.75
-# Edges within which strands that lie along each other do so.
-ALONG = 2.5
-# Parts of an edge by which places along a stretch may be off.
-_EVEN = 0.02
 # By how many edges the places of a gap may move while it is followed.
 _FOLLOWED = 5.0
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
@@ -114,64 +111,31 @@ class Strands:
         pairs = _rows(partial(nearest_pairs, *curve, *limits, sagging), 4)
         points = Gaps(pairs[:, 0], pairs[:, 1], np.ones(len(pairs), dtype=bool))
         crossing = (pairs[:, 3] >= _PARTING) & self.unlike(points, beside, ALONG)
-        looked_for = partial(nearest_to_places, *curve, self._offsets(beside), *limits)
+        looked_for = partial(
+            nearest_to_places, *curve, offsets(self.knots, beside), *limits
+        )
         rows = _rows(looked_for, 6)
         least = Gaps(rows[:, 3], rows[:, 4], np.zeros(len(rows), dtype=bool))
         along = (rows[:, 5] < _PARTING) | ~self.unlike(least, beside, ALONG)
         rows, pairs = rows[along & (rows[:, 5] > -np.inf)], pairs[crossing]
+        rows = rows[of_one_strand(self.knots, rows[:, 0], rows[:, 1], beside)]
         slides = np.arange(len(pairs) + len(rows)) < len(pairs)
         found = np.vstack([pairs[:, :3], rows[:, :3]])
         return Gaps(found[:, 0], found[:, 1], slides), found[:, 2] - self.diameter
 
-    def _offsets(self, beside: Gaps) -> FloatArray:
-        """Return where strands are looked at on each edge, in parts of it (n,).
-
-        Where on its edge the nearest of some places is.
-        """
-        n, whole = len(self.loop.rest_lengths), self.knots[-1]
-        if not len(beside):
-            return np.zeros(n)
-        s = beside.s % whole
-        edge = np.clip(np.searchsorted(self.knots, s, side="right") - 1, 0, n - 1)
-        parts = (s - self.knots[edge]) / self.loop.rest_lengths[edge]
-        off = np.abs(self.knots[:-1, None] - s)
-        nearest = np.minimum(off, whole - off).argmin(axis=1)
-        offsets: FloatArray = parts[nearest]
-        return offsets
-
-    def evenly(self, gaps: Gaps, forces: FloatArray) -> Gaps | None:
-        """Return gaps where strands lie along each other, an edge from each other.
-
-        The middle of each stretch, by the forces (k,), is one of the places, so that they
-        are the same whatever the way there was. None if all are where they should be.
-        """
-        beside = np.flatnonzero(~gaps.slides)
-        order = beside[np.argsort(gaps.s[beside])]
-        number = np.arange(len(self.knots), dtype=np.float64)
-        at, facing = (np.interp(each, self.knots, number) for each in (gaps.s, gaps.t))
-        steps = np.maximum(np.diff(at[order]), np.abs(np.diff(facing[order])))
-        stretches = np.split(order, np.flatnonzero(steps > ALONG) + 1)
-        laid, moved = gaps[gaps.slides], False
-        for stretch in stretches:
-            edges, t, push = at[stretch], gaps.t[stretch], np.maximum(forces[stretch], 0.0)
-            if len(stretch) > 1 and push.any():
-                middle = float(push @ edges / push.sum())
-                first, last = np.round(edges[[0, -1]] - middle)
-                even = middle + np.arange(first, last + 1)
-                if len(even) != len(edges) or np.abs(even - edges).max() > _EVEN:
-                    t, edges, moved = np.interp(even, edges, t), even, True
-            s = np.interp(edges % number[-1], number, self.knots)
-            laid = laid.joined(Gaps(s, t, np.zeros(len(s), dtype=bool)))
-        return laid if moved else None
-
     def unlike(self, gaps: Gaps, others: Gaps, edges: float = _BESIDE) -> BoolArray:
         """Return which of `gaps` (k,) are farther from others than that, on a strand."""
         reach = edges * self.loop.rest_lengths.max()
-        ends = (gaps.s, others.s), (gaps.t, others.t)
-        off = [np.abs(one[:, None] - other) for one, other in ends]
         whole = self.knots[-1]
-        near = [np.minimum(each, whole - each) < reach for each in off]
-        unlike: BoolArray = ~(near[0] & near[1]).any(axis=1)
+
+        def near(places: FloatArray, other: FloatArray) -> BoolArray:
+            off = np.abs(places[:, None] - other) % whole
+            close: BoolArray = np.minimum(off, whole - off) < reach
+            return close
+
+        alike = near(gaps.s, others.s) & near(gaps.t, others.t)
+        alike |= near(gaps.s, others.t) & near(gaps.t, others.s)
+        unlike: BoolArray = ~alike.any(axis=1)
         return unlike
 
     def distinct(self, gaps: Gaps) -> BoolArray:
@@ -191,7 +155,8 @@ class Strands:
     def laid_along(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands touch at a point that lie along each other by now."""
         along: BoolArray = self.parting(x, gaps) < _STAYS * _PARTING
-        return gaps.slides & along
+        laid: BoolArray = gaps.slides & along
+        return laid
 
     def crossing(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands lie along each other that touch at a point by now."""
@@ -202,7 +167,8 @@ class Strands:
             ],
             dtype=bool,
         )
-        return ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
+        crossing: BoolArray = ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
+        return crossing
 
     def at(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
         """Return gaps followed to a loop x (n, d), and how wide they are (k,).
@@ -228,6 +194,8 @@ class Strands:
         curved = np.stack([self._basis(s, 2), -self._basis(t, 2)])
         across = weights @ x
         distances = np.linalg.norm(across, axis=1)
+        if not distances.all():
+            raise LinAlgError("strands of the loop meet")
         normals = across / distances[:, None]
         bends = np.einsum("ekn,nd,kd->ek", curved, x, normals, optimize=True)
         return Between(weights, slopes, normals, distances, slopes @ x, bends)

@@ -91,7 +91,10 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     """
     film = problem.film.of_loop(found.shape)
     energy = film.energy(problem.loop, found.load)
-    models = models_for(problem.film, problem.loop, energy)
+    if found.contacts is None:
+        models = models_for(problem.film, problem.loop, energy)
+    else:
+        models = DenseModels(found.contacts.held(energy, problem.loop))
     x_loop = film.project(found.shape.x_loop)
     model = models.at(x_loop).dense
     modes = {}

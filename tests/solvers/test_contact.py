@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from functools import cache
 
 import numpy as np
@@ -11,7 +13,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import strands_of
 from eulerplateau.mesh import Disk
-from eulerplateau.solvers import Equilibrium, Problem, Status, solve
+from eulerplateau.solvers import Equilibrium, Problem, Status, lowest_modes, solve
 from eulerplateau.solvers.contact.separation import separated, thinnest
 from tests.helpers import shapes
 
@@ -147,3 +149,87 @@ def test_a_loop_that_bends_more_than_its_rod_can_is_too_thick() -> None:
 def test_a_diameter_out_of_range_is_refused(diameter: float) -> None:
     with pytest.raises(SpecError, match="diameter"):
         Problem(disk(), "springs", diameter=diameter)
+
+
+@pytest.mark.parametrize("solver", ["cg", "cg-plain"])
+def test_solvers_that_know_no_contact_are_refused(solver: str) -> None:
+    with pytest.raises(SpecError, match="newton"):
+        solve(Problem(disk(), "springs", diameter=0.02), 10.0, solver=solver)
+
+
+def test_modes_of_a_film_in_contact_keep_its_gap() -> None:
+    found = eight("dirichlet", 0.02)
+    problem = Problem(disk(), "dirichlet", diameter=0.02)
+    contacts = found.contacts
+    assert contacts is not None
+    assert contacts.unstable_let_go is None
+    modes = lowest_modes(problem, found, 3)
+    strands, x = strands_of(problem.loop), found.shape.x_loop
+    slope = strands.between(x, contacts.places).jacobian()
+    for mode in modes.values():
+        assert np.abs(slope @ mode[disk().loop].ravel()).max() < 1e-9
+
+
+def test_a_contact_that_hardly_pushes_is_doubtful_and_counted_both_ways() -> None:
+    """The eight as wide as its waist is when nothing touches: then the force vanishes."""
+    problem = Problem(disk(), "dirichlet")
+    free = solve(problem, 3000.0, eight("dirichlet", 0.05).shape)
+    assert free.is_minimum
+    x, thin = free.shape.x_loop, Problem(disk(), "dirichlet", diameter=1e-3)
+    _, widths = strands_of(thin.loop).near(x, 0.1)
+    waist = float(widths.min()) + 1e-3
+    found = solve(Problem(disk(), "dirichlet", diameter=waist), 3000.0, free)
+    contacts = found.contacts
+    assert contacts is not None
+    assert len(contacts) == 1
+    assert contacts.doubtful.all()
+    assert contacts.unstable_let_go == found.n_unstable == 0
+    assert found.energy == pytest.approx(free.energy, rel=1e-12)
+
+
+def turned(mesh: Disk, part: float) -> FloatArray:
+    """An oval start in the plane whose long axis is turned on the mesh by parts of an edge.
+
+    The mesh is round, of even edges: what differs is how its vertices lie on the oval.
+    """
+    angle = 2 * np.pi * part / mesh.n_b
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return mesh.x @ turn.T @ np.diag([1.4, 0.7, 1.0]) @ turn
+
+
+def test_force_and_index_stay_when_the_mesh_is_shifted_along_the_loop() -> None:
+    def spread(rings: int) -> float:
+        mesh = shapes.mesh_of(*shapes.disk_points(rings))
+        problem = Problem(mesh, "area", in_plane=True, diameter=0.05)
+        forces = []
+        for part in (0.0, 0.2, 0.5):
+            found = solve(problem, 3000.0, turned(mesh, part))
+            assert found.n_unstable == 0
+            assert found.contacts is not None
+            forces.append(found.contacts.force)
+        return float(np.ptp(forces) / forces[0])
+
+    coarse, fine = spread(8), spread(12)
+    assert coarse < 1e-3
+    assert np.log(coarse / fine) / np.log(12 / 8) > 2.5
+
+
+def test_a_loop_without_a_diameter_loads_nothing_of_contact() -> None:
+    code = """
+import sys
+from eulerplateau.solvers import Problem, solve
+from tests.helpers import shapes
+mesh = shapes.mesh_of(*shapes.disk_points(3))
+for film in ("springs", "area"):
+    found = solve(Problem(mesh, film), 100.0)
+assert found.contacts is None
+print(*sys.modules)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    parts = ("contact", "strand", "gaps")
+    ours = [name for name in done.stdout.split() if name.startswith("eulerplateau")]
+    assert "eulerplateau.solvers.newton" in ours
+    assert [name for name in ours if any(part in name for part in parts)] == []

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import ALONG, NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands
+from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.loop import ALONG, NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands, evenly
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 
 # The residual below which it is asked whether strands pull, and what counts as pulling:
@@ -143,7 +143,11 @@ class Keeping:
         pushing = state.forces >= -certain
         if pushing.all():
             return None
-        return self.moved(state, state.model.x, state.gaps[pushing])
+        return self.without(state, ~pushing)
+
+    def without(self, state: Touching, let_go: BoolArray) -> Touching:
+        """Return the state with some of its gaps (k,) no longer closed."""
+        return self.moved(state, state.model.x, state.gaps[~let_go])
 
     def crossing(self, state: Touching) -> Touching | None:
         """Return the state with strands touching at points that no longer lie along.
@@ -191,5 +195,5 @@ class Keeping:
 
     def _laid_evenly(self, state: Touching) -> Touching | None:
         """Return the state with strands held along each other at even places, else None."""
-        after = self.strands.evenly(state.gaps, state.forces)
+        after = evenly(self.strands.knots, state.gaps, state.forces)
         return None if after is None else self._changed(state, after, NO_GAPS)

@@ -14,7 +14,7 @@ from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import Contacts, Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.contact.descent import ContactDescent
-from eulerplateau.solvers.contact.keeping import Touching
+from eulerplateau.solvers.contact.keeping import Keeping, Touching
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem
@@ -25,6 +25,8 @@ from eulerplateau.threads import one_thread
 _SHAPES = 60
 # The residual at which a film that has tilted from where it was made is made anew.
 _CLOSE = 1e-5
+# By which part of the diameter strands may overlap between the vertices they are held at.
+_OVERLAP = 1e-2
 
 
 def search(
@@ -110,16 +112,23 @@ def _record(
     spent: int,
     status: Status,
 ) -> Equilibrium:
-    contacts = _contacts(strands_of(problem.loop), film, state)
-    tensions = state.model.tensions[: len(state.model.x)]
-    found = problem.equilibrium(shape, tensions, load, status)
-    found = replace(
-        found,
-        iterations=spent,
-        contacts=contacts,
-        residual=problem.residual(shape, tensions, load, contacts.pushes),
-    )
-    return with_stability(found, stability(state.model))
+    strands, tensions = strands_of(problem.loop), state.model.tensions
+    contacts = _contacts(strands, film, state)
+    if contacts.doubtful.any():
+        energy = film.energy(problem.loop, load)
+        fewer = Keeping(energy, strands).without(state, contacts.doubtful)
+        index = stability(fewer.model).n_unstable
+        contacts = replace(contacts, unstable_let_go=index)
+    on_edges = tensions[: len(state.model.x)]
+    found = problem.equilibrium(shape, on_edges, load, status)
+    residual = problem.residual(shape, on_edges, load, contacts.pushes)
+    found = replace(found, iterations=spent, contacts=contacts, residual=residual)
+    found = with_stability(found, stability(state.model))
+    if contacts.forces.min(initial=0.0) < -state.uncertain:
+        return replace(found, status=Status.STALLED)
+    # What vertices do not see of strands along each other is an edge's length's fault.
+    coarse = found.converged and contacts.smallest_gap < -_OVERLAP * strands.diameter
+    return replace(found, status=Status.UNRESOLVED) if coarse else found
 
 
 def _contacts(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:

@@ -1,0 +1,227 @@
+"""Films whose strands touch: a loop of a diameter, held where it crosses itself.
+
+Of a loop of diameter d that touches itself in one point the film is the one whose waist is
+held at d. The constraint has two equations, length - 1 = 0 and distance - d = 0, with the
+multipliers beta and -F, F = dE/dd being the force with which the strands push each other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import LinAlgError
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.conformal.by_writhe import CONTROL
+from eulerplateau.branches.conformal.family import SmoothFamily
+from eulerplateau.branches.conformal.terms import WholeLength
+from eulerplateau.branches.point import BranchPoint, first_point
+from eulerplateau.exact.conformal import (
+    TWISTED,
+    Basis,
+    Crossing,
+    bending_energy,
+    loop_length,
+    make_basis,
+)
+from eulerplateau.loop import LoopEnergy
+
+_STEPS, _TRUST = 12, 0.5
+_SETTLED, _STUCK = 1e-13, 1e-9
+_EASY, _FIRST, _SHORTEST = 5, 0.1, 1e-4
+
+
+@dataclass(frozen=True)
+class HeldApart(WholeLength):
+    """The constraint that a loop is as long as it was, its strands `diameter` apart."""
+
+    diameter: float
+
+    def misfit(self, x: FloatArray) -> FloatArray:
+        """Return what length and distance are too large by (2,)."""
+        loop = self.unknowns.loop(x)
+        apart = loop.crossing.distance - self.diameter
+        return np.array([loop_length(loop.curve) - 1, apart])
+
+    def jacobian(self, x: FloatArray) -> FloatArray:
+        """Return the derivatives of length and distance (2, size)."""
+        u = self.unknowns
+        apart = u.slope(u.loop(x).crossing.slope).T
+        return np.vstack([super().jacobian(x), apart])
+
+    def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the multipliers times those (size, 1)."""
+        return self.jacobian(x).T @ tensions[:, None]
+
+    def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the multipliers times the second derivatives (size, size)."""
+        u = self.unknowns
+        apart = u.curvature(u.loop(x).crossing.curvature)
+        return super().stiffness(x, tensions) + tensions[1] * apart
+
+    def project(self, x: FloatArray) -> FloatArray | None:
+        """Return the loop next to x that bends least away from it."""
+        for _ in range(_STEPS):
+            misfit, slopes = self.misfit(x), self.jacobian(x)
+            if np.abs(misfit).max() < _SETTLED:
+                return x
+            x = x - slopes.T @ np.linalg.solve(slopes @ slopes.T, misfit)[:, None]
+        return None
+
+
+@dataclass(frozen=True)
+class TouchingFamily(SmoothFamily):
+    """Films held apart at the waist; `values` has their "diameter" too."""
+
+    def energy(self, value: float) -> LoopEnergy:
+        """Return the energy at a value of the parameter."""
+        held = self.held(value)
+        return replace(super().energy(value), constraint=held)
+
+    def held(self, value: float) -> HeldApart:
+        """Return the constraint at a value of the parameter."""
+        return HeldApart(self.unknowns, self._values(value)["diameter"])
+
+
+@dataclass(frozen=True)
+class Touching:
+    """A film whose strands touch in one point, of all half-turns.
+
+    Attributes
+    ----------
+    x : (size, 1) float, what stands for the loop
+    tensions : (2,) float, beta and -F
+    corrections : int, of Newton's method
+    """
+
+    family: TouchingFamily
+    x: FloatArray
+    tensions: FloatArray
+    corrections: int
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """Load, twist ratio, link and diameter."""
+        return self.family.values
+
+    @property
+    def basis(self) -> Basis:
+        """The basis of the loop."""
+        return self.family.basis
+
+    @property
+    def force(self) -> float:
+        """The force of contact F = dE/dd, in alpha / L^2; negative if strands pull."""
+        return -float(self.tensions[1])
+
+    @property
+    def crossing(self) -> Crossing:
+        """Where the strands touch."""
+        return self.family.unknowns.loop(self.x).crossing
+
+    @property
+    def convexity(self) -> float:
+        """The least second derivative of the strands' distance, times the distance.
+
+        By arc length, of both strands. It is 1 - |cos| of the crossing angle of straight
+        ones; where it vanishes a point of contact becomes two. The force makes a kink of
+        the curvature, dkappa/ds jumping by F/2, of which K harmonics miss F (ds/dphi) /
+        (2 pi K) in the curvature itself.
+        """
+        at, miss = self.crossing, self.force / (2 * math.pi * self.basis.harmonics)
+        form = at.form / np.outer(at.speeds, at.speeds) - miss * np.diag(at.speeds)
+        return float(np.linalg.eigvalsh(form)[0]) * at.distance
+
+    @property
+    def energy(self) -> float:
+        """Energy of film, bending and twist."""
+        loop, load = self.family.unknowns.loop(self.x), self.values["load"]
+        c = loop.coefficients
+        film = 0.5 * load * float(c @ self.basis.dirichlet @ c)
+        return film + bending_energy(loop.curve) + self.family.twist(load).energy(self.x)
+
+    @property
+    def point(self) -> BranchPoint:
+        """The film as a point of a branch in the load."""
+        return first_point(self.family, self.x, self.values["load"], CONTROL)
+
+    def in_basis(self, basis: Basis) -> Touching | None:
+        """Return the same film in another basis; None if Newton's method fails."""
+        family = replace(self.family, basis=basis)
+        x = family.transferred(self.family, self.x)
+        return settled(replace(self, family=family, x=x))
+
+
+def settled(guess: Touching) -> Touching | None:
+    """Return the film near a guess by Newton's method; None if that fails.
+
+    The force is an unknown too, so that a guess may have any distance of its strands.
+    """
+    family, x, tensions = guess.family, guess.x, guess.tensions
+    load, best = guess.values["load"], math.inf
+    energy, held, n = family.energy(load), family.held(load), len(x)
+    for corrections in range(_STEPS):
+        forces, slopes = energy.forces(x), held.jacobian(x)
+        unbalanced = sum(forces, start=slopes.T @ tensions[:, None])
+        misfit = held.misfit(x)
+        largest = max(float(np.abs(force).max()) for force in forces)
+        residual = max(float(np.abs(unbalanced).max()) / largest, *np.abs(misfit))
+        if residual < _SETTLED or 0.5 * best < residual < _STUCK:
+            return Touching(family, x, tensions, corrections)
+        best = min(best, residual)
+        matrix = np.zeros((n + 2, n + 2))
+        matrix[:n, :n] = energy.lagrangian_hessian(x, tensions)
+        matrix[:n, n:], matrix[n:, :n] = slopes.T, slopes
+        try:
+            step = np.linalg.solve(matrix, -np.append(unbalanced, misfit))
+        except LinAlgError:
+            return None
+        size = float(family.basis.wavenumbers @ np.abs(family.unknowns.scale * step[:n]))
+        if not np.isfinite(size):
+            return None
+        short = min(1.0, _TRUST / (size + 1e-300))
+        x, tensions = x + short * step[:n, None], tensions + short * step[n:]
+    return None
+
+
+def gone_to(
+    start: Touching, wanted: Mapping[str, float], crowding: float
+) -> Touching | None:
+    """Return the film at other values, on a grid of other crowding; None if not found.
+
+    The way there is straight in the values and in the logarithms of diameter and crowding.
+    So a loop's coefficients hardly change where its waist closes: films are extrapolated.
+    """
+    film, before, done, step = start, start, 0.0, _FIRST
+    last = 0.0
+    while done < 1.0:
+        there = min(1.0, done + step)
+        far = (there - done) / (done - last) if done > last else 0.0
+        values = {k: _between(k, start.values[k], wanted[k], there) for k in wanted}
+        crowded = _between("diameter", start.basis.crowding, crowding, there)
+        basis = make_basis(start.basis.harmonics, TWISTED, crowded)
+        guess = Touching(
+            TouchingFamily(basis, values),
+            film.x + far * (film.x - before.x),
+            film.tensions + far * (film.tensions - before.tensions),
+            0,
+        )
+        found = settled(guess)
+        if found is None:
+            step /= 2
+            if step < _SHORTEST:
+                return None
+            continue
+        film, before, last, done = found, film, done, there
+        if found.corrections <= _EASY:
+            step *= 1.5
+    return film
+
+
+def _between(name: str, first: float, second: float, part: float) -> float:
+    if name == "diameter":
+        return float(first ** (1 - part) * second**part)
+    return first + part * (second - first)

@@ -16,17 +16,18 @@ import numpy as np
 from eulerplateau.branches.conformal.curved import NoFilmError
 from eulerplateau.branches.conformal.films import checked, mirrored
 from eulerplateau.branches.conformal.touching import (
+    FIRST,
     Touching,
     TouchingFamily,
-    gone_to,
+    crowding,
     settled,
+    way,
 )
 from eulerplateau.errors import SpecError
 from eulerplateau.exact import finite
 from eulerplateau.exact.conformal import (
     TWISTED,
     ConformalFilm,
-    flat_eight,
     make_basis,
     nearest_strands,
 )
@@ -45,10 +46,8 @@ _COEFFICIENTS = (
     (0.0667, 0.0213, 0.0054, 0.0008, -0.0002, -0.0002, -0.0001),
     (-0.0285, -0.0076, -0.0015, -0.0001, 0.0001, 0.0001, 0.0001),
 )
-_TENSIONS = (-30.0, 9.0)
+_TENSIONS, _ANGLE = (-30.0, 9.0), 36.0
 _HARMONICS, _MORE = 96, (144, 216, 324)
-# The neck is conformally about log(_WIDE / d) / angle long: its grid's crowding.
-_WIDE, _CROWDING = 0.3, 0.334
 # A point force leaves errors of O(K^-3): relative change of the energy that is small enough
 # from one number of harmonics to the next, and part of it that is left then.
 _ENOUGH, _LEFT = 1e-9, 1 / (1.5**3 - 1)
@@ -156,8 +155,7 @@ def thick_eight(
     NoFilmError : where Newton's method finds no film on the way there
     """
     checked(load, twist_ratio, link)
-    if not 0 < finite("diameter", diameter) <= THICKEST:
-        raise SpecError("diameter", f"found {diameter:g}; should be above 0, up to 0.1")
+    checked_diameter(diameter)
     if link < 0:
         return _mirror_image(thick_eight(load, diameter, twist_ratio, -link))
     values = {"load": load, "twist_ratio": twist_ratio, "link": link, "diameter": diameter}
@@ -165,15 +163,30 @@ def thick_eight(
     return _measured(coarse, fine)
 
 
-def touching(values: Mapping[str, float], start: Touching | None = None) -> Touching:
-    """Return the film held at a diameter, by few harmonics, from a film next to it.
+def checked_diameter(diameter: float) -> float:
+    """Return a diameter; raises SpecError unless it lies between 0 and THICKEST."""
+    if not 0 < finite("diameter", diameter) <= THICKEST:
+        problem = f"found {diameter:g}; should be above 0, up to {THICKEST:g}"
+        raise SpecError("diameter", problem)
+    return diameter
 
-    values : "load", "twist_ratio", "link" and "diameter". Raises NoFilmError.
+
+def touching(values: Mapping[str, float]) -> Touching:
+    """Return the film held at a diameter, by few harmonics; raises NoFilmError if none is.
+
+    values : "load", "twist_ratio", "link" and "diameter"
     """
-    found = gone_to(start or _first(), values, _crowding(values))
-    if found is None:
+    untwisted = {**values, "twist_ratio": 0.0, "link": 0.0}
+    return reached(reached(_first(), untwisted), values)
+
+
+def reached(start: Touching, values: Mapping[str, float], step: float = FIRST) -> Touching:
+    """Return the film at other values; raises NoFilmError if the way does not lead there."""
+    *_, found = start, *way(start, values, step)
+    if found.values != values:
+        opens = "; it opens before" if found.force < 0 else ""
         problem = "Newton's method finds no film with one point of contact"
-        raise NoFilmError(f"{problem} at sigma_hat = {values['load']:g}")
+        raise NoFilmError(f"{problem} at sigma_hat = {values['load']:g}{opens}")
     return found
 
 
@@ -194,7 +207,7 @@ def refined(film: Touching) -> tuple[Touching, Touching]:
 @lru_cache(maxsize=1)
 def _first() -> Touching:
     """Return the film to begin with."""
-    basis = make_basis(_HARMONICS, TWISTED, _crowding(_BEGIN))
+    basis = make_basis(_HARMONICS, TWISTED, crowding(_BEGIN["diameter"], _ANGLE))
     c = np.zeros(basis.size)
     for part, begin in zip(basis.slices, _COEFFICIENTS, strict=True):
         c[part][: len(begin)] = begin
@@ -203,12 +216,6 @@ def _first() -> Touching:
     if found is None:
         raise ArithmeticError("no twisted eight found to begin with")
     return found
-
-
-def _crowding(values: Mapping[str, float]) -> float:
-    """Return the crowding of a grid that resolves the neck of a film."""
-    angle = 2 * abs(flat_eight(values["load"]).angle)
-    return min(1.0, _CROWDING * (values["diameter"] / _WIDE) ** (math.pi / angle))
 
 
 def _measured(coarse: Touching, fine: Touching) -> ThickEight:

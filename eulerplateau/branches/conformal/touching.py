@@ -8,7 +8,7 @@ multipliers beta and -F, F = dE/dd being the force with which the strands push e
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,7 +31,10 @@ from eulerplateau.loop import LoopEnergy
 
 _STEPS, _TRUST = 12, 0.5
 _SETTLED, _STUCK = 1e-13, 1e-9
-_EASY, _FIRST, _SHORTEST = 5, 0.1, 1e-4
+# Of the way to other values: corrections up to which steps grow, the first and the shortest.
+_EASY, FIRST, _SHORTEST = 5, 0.05, 2e-3
+# Of the grid that resolves a neck: lengths in L.
+_CROWDING, _WIDE = 0.0045, 0.08
 
 
 @dataclass(frozen=True)
@@ -187,38 +190,50 @@ def settled(guess: Touching) -> Touching | None:
     return None
 
 
-def gone_to(
-    start: Touching, wanted: Mapping[str, float], crowding: float
-) -> Touching | None:
-    """Return the film at other values, on a grid of other crowding; None if not found.
+def way(
+    start: Touching, wanted: Mapping[str, float], step: float = FIRST
+) -> Iterator[Touching]:
+    """Yield the films on the way to other values, until those or until none is found.
 
-    The way there is straight in the values and in the logarithms of diameter and crowding.
-    So a loop's coefficients hardly change where its waist closes: films are extrapolated.
+    The way there is straight in the values, and in the logarithm of the diameter. The grid
+    follows the neck, so that coefficients change little and films can be extrapolated.
+    step : float, the first, as a part of the way
     """
-    film, before, done, step = start, start, 0.0, _FIRST
-    last = 0.0
-    while done < 1.0:
+    film, before, done, last = start, start, 0.0, -1.0
+    while done < 1.0 and step >= _SHORTEST:
         there = min(1.0, done + step)
-        far = (there - done) / (done - last) if done > last else 0.0
         values = {k: _between(k, start.values[k], wanted[k], there) for k in wanted}
-        crowded = _between("diameter", start.basis.crowding, crowding, there)
-        basis = make_basis(start.basis.harmonics, TWISTED, crowded)
-        guess = Touching(
-            TouchingFamily(basis, values),
-            film.x + far * (film.x - before.x),
-            film.tensions + far * (film.tensions - before.tensions),
-            0,
-        )
-        found = settled(guess)
+        found = settled(_extrapolated(film, before, (there - done) / (done - last), values))
         if found is None:
             step /= 2
-            if step < _SHORTEST:
-                return None
             continue
-        film, before, last, done = found, film, done, there
+        film, before, done, last = found, film, there, done
+        yield film
         if found.corrections <= _EASY:
             step *= 1.5
-    return film
+
+
+def crowding(diameter: float, angle: float) -> float:
+    """Return the crowding of a grid that resolves a neck.
+
+    Between strands that cross at an angle, in degrees, it is a helicoid and conformally
+    about log(size / diameter) pi / angle long.
+    """
+    return _CROWDING * (diameter / _WIDE) ** (180 / angle)
+
+
+def _extrapolated(
+    film: Touching, before: Touching, far: float, values: Mapping[str, float]
+) -> Touching:
+    """Return a guess at values as far beyond `film`, per step there from `before`."""
+    angle, past = film.crossing.angle, before.crossing.angle
+    ahead = max(angle + far * (angle - past), 0.5 * angle)
+    basis = make_basis(
+        film.basis.harmonics, TWISTED, crowding(values["diameter"], ahead)
+    )
+    x = film.x + far * (film.x - before.x)
+    tensions = film.tensions + far * (film.tensions - before.tensions)
+    return Touching(TouchingFamily(basis, values), x, tensions, 0)
 
 
 def _between(name: str, first: float, second: float, part: float) -> float:

@@ -1,0 +1,83 @@
+"""The loads between which strands of an eight touch in one point.
+
+Below the lower one the eight opens: the force with which the strands push each other has
+come to zero. Above the upper one a point of contact is not enough: beside it the strands
+would be nearer than their diameter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import chain, pairwise
+
+from scipy.optimize import brentq
+
+from eulerplateau.branches.conformal.films import checked
+from eulerplateau.branches.conformal.thick_eight import (
+    checked_diameter,
+    reached,
+    touching,
+)
+from eulerplateau.branches.conformal.touching import Touching, way
+
+# Where the search begins, the loads up to which it goes, and to what part one is found.
+_MIDDLE = 1700.0
+_LOWEST, _HIGHEST = 25.0, 5100.0
+_FOUND = 1e-9
+
+
+@dataclass(frozen=True)
+class ContactLoads:
+    """sigma_hat at which an eight opens when it is unloaded, and at which contact splits.
+
+    None where that is not found: between 25 and 5100, before Newton's method fails.
+    """
+
+    opens: float | None
+    splits: float | None
+
+
+def contact_loads(
+    diameter: float, twist_ratio: float = 0.0, link: float = 0.0
+) -> ContactLoads:
+    """Return the loads between which an eight of a diameter touches in one point.
+
+    Parameters are those of `thick_eight`. Raises SpecError for wrong ones, and NoFilmError
+    where no film is found to begin with.
+    """
+    checked(_MIDDLE, twist_ratio, link)
+    values = {"twist_ratio": twist_ratio, "link": abs(link)}
+    values |= {"load": _MIDDLE, "diameter": checked_diameter(diameter)}
+    start = touching(values)
+    return ContactLoads(
+        opens=_crossed(start, _LOWEST if start.force > 0 else _HIGHEST, _force),
+        splits=_crossed(start, _HIGHEST, _convexity),
+    )
+
+
+def _crossed(
+    start: Touching, load: float, what: Callable[[Touching], float]
+) -> float | None:
+    """Return the first load on the way to one at which something vanishes, if it does."""
+    films = chain([start], way(start, {**start.values, "load": load}))
+    for near in pairwise(films):
+        if what(near[0]) * what(near[1]) < 0:
+            break
+    else:
+        return None
+
+    def at(value: float) -> float:
+        closest = min(near, key=lambda film: abs(film.values["load"] - value))
+        return what(reached(closest, {**closest.values, "load": value}, 1.0))
+
+    low, high = sorted(film.values["load"] for film in near)
+    return float(brentq(at, low, high, rtol=_FOUND))
+
+
+def _force(film: Touching) -> float:
+    return film.force
+
+
+def _convexity(film: Touching) -> float:
+    return film.convexity

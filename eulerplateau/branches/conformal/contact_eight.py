@@ -47,7 +47,8 @@ _COEFFICIENTS = (
     (-0.0285, -0.0076, -0.0015, -0.0001, 0.0001, 0.0001, 0.0001),
 )
 _TENSIONS, _ANGLE = (-30.0, 9.0), 36.0
-_HARMONICS, _MORE = 96, (144, 216, 324)
+# Harmonics on the way, per logarithm of the diameter, and the most in the end.
+_HARMONICS, _MOST = 21, 324
 # A point force leaves errors of O(K^-3): relative change of the energy that is small enough
 # from one number of harmonics to the next, and part of it that is left then.
 _ENOUGH, _LEFT = 1e-9, 1 / (1.5**3 - 1)
@@ -176,8 +177,9 @@ def touching(values: Mapping[str, float]) -> Touching:
 
     values : "load", "twist_ratio", "link" and "diameter"
     """
+    harmonics = math.ceil(_HARMONICS * math.log(1 / values["diameter"]))
     untwisted = {**values, "twist_ratio": 0.0, "link": 0.0}
-    return reached(reached(_first(), untwisted), values)
+    return reached(reached(_first(harmonics), untwisted), values)
 
 
 def reached(start: Touching, values: Mapping[str, float], step: float = FIRST) -> Touching:
@@ -193,9 +195,8 @@ def reached(start: Touching, values: Mapping[str, float], step: float = FIRST) -
 def refined(film: Touching) -> tuple[Touching, Touching]:
     """Return a film by more and more harmonics, the last two."""
     coarse = film
-    for harmonics in _MORE:
-        basis = make_basis(harmonics, TWISTED, film.basis.crowding)
-        finer = film.in_basis(basis)
+    while (harmonics := 3 * film.basis.harmonics // 2) <= _MOST:
+        finer = film.in_basis(make_basis(harmonics, TWISTED, film.basis.crowding))
         if finer is None:
             break
         coarse, film = film, finer
@@ -204,10 +205,10 @@ def refined(film: Touching) -> tuple[Touching, Touching]:
     return coarse, film
 
 
-@lru_cache(maxsize=1)
-def _first() -> Touching:
+@lru_cache(maxsize=4)
+def _first(harmonics: int) -> Touching:
     """Return the film to begin with."""
-    basis = make_basis(_HARMONICS, TWISTED, crowding(_BEGIN["diameter"], _ANGLE))
+    basis = make_basis(harmonics, TWISTED, crowding(_BEGIN["diameter"], _ANGLE))
     c = np.zeros(basis.size)
     for part, begin in zip(basis.slices, _COEFFICIENTS, strict=True):
         c[part][: len(begin)] = begin

@@ -14,7 +14,7 @@ from itertools import chain, pairwise
 from scipy.optimize import brentq
 
 from eulerplateau.branches.conformal.films import checked
-from eulerplateau.branches.conformal.thick_eight import (
+from eulerplateau.branches.conformal.contact_eight import (
     checked_diameter,
     reached,
     touching,

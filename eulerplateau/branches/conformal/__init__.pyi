@@ -5,6 +5,7 @@ from .by_writhe import (
     films_by_writhe as films_by_writhe,
     stiffness as stiffness,
 )
+from .contact_eight import ThickEight as ThickEight, thick_eight as thick_eight
 from .contact_limits import ContactLoads as ContactLoads, contact_loads as contact_loads
 from .curved import NoFilmError as NoFilmError
 from .curved_family import CurvedFamily as CurvedFamily
@@ -16,5 +17,4 @@ from .films import (
 )
 from .pinched import PinchedEight as PinchedEight, pinched_eight as pinched_eight
 from .resolution import in_basis as in_basis, resolved as resolved, tail as tail
-from .contact_eight import ThickEight as ThickEight, thick_eight as thick_eight
 from .touching import TouchingFamily as TouchingFamily

@@ -33,8 +33,8 @@ from eulerplateau.exact.conformal import (
 )
 
 THICKEST = 0.1
-# A film to begin with, at a load of 1700 with a diameter of 0.1: the first harmonics of x, y
-# and z, beta and -F, where Newton's method starts (to be converged).
+# A film to begin with, where Newton's method starts (to be converged): the first harmonics
+# of x, y and z, beta and -F, and the crossing angle.
 _BEGIN: Mapping[str, float] = {
     "load": 1700.0,
     "twist_ratio": 0.0,
@@ -47,8 +47,8 @@ _COEFFICIENTS = (
     (-0.0285, -0.0076, -0.0015, -0.0001, 0.0001, 0.0001, 0.0001),
 )
 _TENSIONS, _ANGLE = (-30.0, 9.0), 36.0
-# Harmonics on the way, per logarithm of the diameter, and the most in the end.
-_HARMONICS, _MOST = 21, 324
+# Harmonics on the way, per logarithm of the diameter and at most; the most in the end.
+_HARMONICS, _WAY, _MOST = 21, 96, 324
 # A point force leaves errors of O(K^-3): relative change of the energy that is small enough
 # from one number of harmonics to the next, and part of it that is left then.
 _ENOUGH, _LEFT = 1e-9, 1 / (1.5**3 - 1)
@@ -107,8 +107,8 @@ class ThickEight:
         reasons = {
             "too_thick": "the loop bends more than its thickness allows: take a smaller "
             "diameter",
-            "opens": f"the eight opens: strands {self.diameter:g} L thick would have to pull "
-            f"with {-self.contact_force:.4g} alpha/L^2; take a higher load or a smaller "
+            "opens": "the eight opens: its strands would have to pull each other with "
+            f"{-self.contact_force:.4g} alpha/L^2; take a higher load or a smaller "
             "diameter",
             "splits": "one point of contact is not enough: strands would overlap beside "
             "it; take a lower load, or a mesh",
@@ -177,13 +177,13 @@ def touching(values: Mapping[str, float]) -> Touching:
 
     values : "load", "twist_ratio", "link" and "diameter"
     """
-    harmonics = math.ceil(_HARMONICS * math.log(1 / values["diameter"]))
+    harmonics = min(_WAY, math.ceil(_HARMONICS * math.log(1 / values["diameter"])))
     untwisted = {**values, "twist_ratio": 0.0, "link": 0.0}
     return reached(reached(_first(harmonics), untwisted), values)
 
 
 def reached(start: Touching, values: Mapping[str, float], step: float = FIRST) -> Touching:
-    """Return the film at other values; raises NoFilmError if the way does not lead there."""
+    """Return the film at other values; raises NoFilmError if it is not found."""
     *_, found = start, *way(start, values, step)
     if found.values != values:
         opens = "; it opens before" if found.force < 0 else ""

@@ -31,8 +31,11 @@ from eulerplateau.loop import LoopEnergy
 
 _STEPS, _TRUST = 12, 0.5
 _SETTLED, _STUCK = 1e-13, 1e-9
-# Of the way to other values: corrections up to which steps grow, the first and the shortest.
-_EASY, FIRST, _SHORTEST = 5, 0.05, 2e-3
+# On the way to other values: corrections up to which steps grow, first and shortest step.
+_EASY, FIRST, _SHORTEST = 5, 0.05, 3e-4
+# Steps shorter than this ask for more harmonics, up to so many.
+_SHORT, _MOST_ON_THE_WAY = 8e-3, 216
+_SAME_GRID = 0.01
 # Of the grid that resolves a neck: lengths in L.
 _CROWDING, _WIDE = 0.0045, 0.08
 
@@ -206,8 +209,11 @@ def way(
         found = settled(_extrapolated(film, before, (there - done) / (done - last), values))
         if found is None:
             step /= 2
+            finer = _finer(film) if step < _SHORT else None
+            if finer is not None:
+                film, before, last, step = finer, finer, -1.0, 2 * step
             continue
-        film, before, done, last = found, film, there, done
+        film, before, done, last = _regraded(found), film, there, done
         yield film
         if found.corrections <= _EASY:
             step *= 1.5
@@ -222,15 +228,29 @@ def crowding(diameter: float, angle: float) -> float:
     return _CROWDING * (diameter / _WIDE) ** (180 / angle)
 
 
+def _finer(film: Touching) -> Touching | None:
+    """Return the film by more harmonics, if it may have more."""
+    harmonics = 4 * film.basis.harmonics // 3
+    if harmonics > _MOST_ON_THE_WAY:
+        return None
+    return film.in_basis(make_basis(harmonics, TWISTED, film.basis.crowding))
+
+
+def _regraded(film: Touching) -> Touching:
+    """Return the film on the grid of its own angle, on which all others are."""
+    wanted = crowding(film.values["diameter"], film.crossing.angle)
+    if abs(wanted / film.basis.crowding - 1) < _SAME_GRID:
+        return film
+    return film.in_basis(make_basis(film.basis.harmonics, TWISTED, wanted)) or film
+
+
 def _extrapolated(
     film: Touching, before: Touching, far: float, values: Mapping[str, float]
 ) -> Touching:
     """Return a guess at values as far beyond `film`, per step there from `before`."""
     angle, past = film.crossing.angle, before.crossing.angle
     ahead = max(angle + far * (angle - past), 0.5 * angle)
-    basis = make_basis(
-        film.basis.harmonics, TWISTED, crowding(values["diameter"], ahead)
-    )
+    basis = make_basis(film.basis.harmonics, TWISTED, crowding(values["diameter"], ahead))
     x = film.x + far * (film.x - before.x)
     tensions = film.tensions + far * (film.tensions - before.tensions)
     return Touching(TouchingFamily(basis, values), x, tensions, 0)

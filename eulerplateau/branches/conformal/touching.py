@@ -60,13 +60,15 @@ class HeldApart(WholeLength):
 
     def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the multipliers times those (size, 1)."""
-        return self.jacobian(x).T @ tensions[:, None]
+        force: FloatArray = self.jacobian(x).T @ tensions[:, None]
+        return force
 
     def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the multipliers times the second derivatives (size, size)."""
         u = self.unknowns
         apart = u.curvature(u.loop(x).crossing.curvature)
-        return super().stiffness(x, tensions) + tensions[1] * apart
+        stiff: FloatArray = super().stiffness(x, tensions) + tensions[1] * apart
+        return stiff
 
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return the loop next to x that bends least away from it."""
@@ -225,7 +227,7 @@ def crowding(diameter: float, angle: float) -> float:
     Between strands that cross at an angle, in degrees, it is a helicoid and conformally
     about log(size / diameter) pi / angle long.
     """
-    return _CROWDING * (diameter / _WIDE) ** (180 / angle)
+    return float(_CROWDING * (diameter / _WIDE) ** (180 / angle))
 
 
 def _finer(film: Touching) -> Touching | None:

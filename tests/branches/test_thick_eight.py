@@ -9,7 +9,12 @@ from math import pi
 import numpy as np
 import pytest
 
-from eulerplateau.branches.conformal import TouchingFamily, contact_loads, thick_eight
+from eulerplateau.branches.conformal import (
+    TouchingFamily,
+    opening_load,
+    splitting_load,
+    thick_eight,
+)
 from eulerplateau.branches.conformal.contact_eight import reached, touching
 from eulerplateau.branches.conformal.touching import Touching, settled
 from eulerplateau.exact.conformal import (
@@ -136,17 +141,17 @@ def test_free_film_is_in_contact_without_force():
 
 @pytest.mark.slow
 def test_eight_opens_where_the_twisted_film_is_as_wide():
-    loads = contact_loads(0.05)
-    as_wide = go_to_load(twisted(1350.0), loads.opens)
+    opens = opening_load(0.05)
+    as_wide = go_to_load(twisted(1350.0), opens)
     assert waist(as_wide.film) == pytest.approx(0.05, rel=1e-8)
-    assert thick_eight(loads.opens - 1.0, 0.05).status == "opens"
-    assert thick_eight(loads.opens + 1.0, 0.05).status == "converged"
+    assert thick_eight(opens - 1.0, 0.05).status == "opens"
+    assert thick_eight(opens + 1.0, 0.05).status == "converged"
 
 
 @pytest.mark.slow
 def test_contact_splits_where_strands_would_overlap_beside_it():
     """The index rises there too: the strands turn away from each other's way."""
-    splits = contact_loads(0.05).splits
+    splits = splitting_load(0.05)
     below, above = (thick_eight(splits + by, 0.05) for by in (-20.0, 20.0))
     assert (below.status, above.status) == ("converged", "splits")
     assert below.smallest_gap > -1e-12 * 0.05 > above.smallest_gap

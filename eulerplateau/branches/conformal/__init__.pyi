@@ -6,7 +6,10 @@ from .by_writhe import (
     stiffness as stiffness,
 )
 from .contact_eight import ThickEight as ThickEight, thick_eight as thick_eight
-from .contact_limits import ContactLoads as ContactLoads, contact_loads as contact_loads
+from .contact_limits import (
+    opening_load as opening_load,
+    splitting_load as splitting_load,
+)
 from .curved import NoFilmError as NoFilmError
 from .curved_family import CurvedFamily as CurvedFamily
 from .family import SmoothFamily as SmoothFamily, smooth_family as smooth_family

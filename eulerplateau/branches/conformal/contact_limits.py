@@ -8,7 +8,6 @@ would be nearer than their diameter.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import chain, pairwise
 
 from scipy.optimize import brentq
@@ -20,6 +19,7 @@ from eulerplateau.branches.conformal.contact_eight import (
 )
 from eulerplateau.branches.conformal.films import checked
 from eulerplateau.branches.conformal.touching import Touching, way
+from eulerplateau.exact.conformal import TWISTED, make_basis
 
 # Where the search begins, the loads up to which it goes, and to what part one is found.
 _MIDDLE = 1700.0
@@ -27,33 +27,31 @@ _LOWEST, _HIGHEST = 25.0, 5100.0
 _FOUND = 1e-9
 
 
-@dataclass(frozen=True)
-class ContactLoads:
-    """sigma_hat at which an eight opens when it is unloaded, and at which contact splits.
-
-    None where that is not found: between 25 and 5100, before Newton's method fails.
-    """
-
-    opens: float | None
-    splits: float | None
-
-
-def contact_loads(
+def opening_load(
     diameter: float, twist_ratio: float = 0.0, link: float = 0.0
-) -> ContactLoads:
-    """Return the loads between which an eight of a diameter touches in one point.
+) -> float | None:
+    """Return sigma_hat at which an eight opens when it is unloaded.
 
-    Parameters are those of `thick_eight`. Raises SpecError for wrong ones, and NoFilmError
-    where no film is found to begin with.
+    Parameters are those of `thick_eight`. None if there is no such load above 25, or below
+    5100, before Newton's method fails. Raises SpecError for wrong parameters, and
+    NoFilmError where no film is found to begin with.
     """
+    start = _middle(diameter, twist_ratio, link)
+    return _crossed(start, _LOWEST if start.force > 0 else _HIGHEST, _force)
+
+
+def splitting_load(
+    diameter: float, twist_ratio: float = 0.0, link: float = 0.0
+) -> float | None:
+    """Return sigma_hat beyond which one point of contact is not enough, as above."""
+    return _crossed(_middle(diameter, twist_ratio, link), _HIGHEST, _convexity)
+
+
+def _middle(diameter: float, twist_ratio: float, link: float) -> Touching:
+    """Return the film with which a search begins."""
     checked(_MIDDLE, twist_ratio, link)
-    values = {"twist_ratio": twist_ratio, "link": abs(link)}
-    values |= {"load": _MIDDLE, "diameter": checked_diameter(diameter)}
-    start = touching(values)
-    return ContactLoads(
-        opens=_crossed(start, _LOWEST if start.force > 0 else _HIGHEST, _force),
-        splits=_crossed(start, _HIGHEST, _convexity),
-    )
+    values = {"load": _MIDDLE, "twist_ratio": twist_ratio, "link": abs(link)}
+    return touching({**values, "diameter": checked_diameter(diameter)})
 
 
 def _crossed(
@@ -80,4 +78,7 @@ def _force(film: Touching) -> float:
 
 
 def _convexity(film: Touching) -> float:
-    return film.convexity
+    """Return the convexity for ever more harmonics: its error falls as one over them."""
+    basis = film.basis
+    finer = film.in_basis(make_basis(3 * basis.harmonics // 2, TWISTED, basis.crowding))
+    return film.convexity if finer is None else 3 * finer.convexity - 2 * film.convexity

@@ -4,5 +4,5 @@ And its films next to the matched formula for a narrow waist,
 
     E(d) - E_8 = (sigma/omega) d^2 log(C/d),
 
-with C from the film of half the diameter or of the narrowest.
+with C from the narrowest film.
 """

@@ -215,8 +215,8 @@ def test_narrow_waists_cost_what_a_helicoid_costs():
     flat = flat_eight(1700.0)
     stiff = 1700.0 / (2 * abs(flat.angle))
     slopes = []
-    for d in (0.02, 0.005):
+    for d in (0.02, 0.01):
         excess = [(touching_at(size).energy - flat.energy) / size**2 for size in (d, d / 2)]
         slopes.append((excess[1] - excess[0]) / np.log(2) / stiff)
     # What is left is of the order of d^2 log^2 d.
-    assert abs(slopes[1] - 1) < 0.15 * abs(slopes[0] - 1) < 0.01
+    assert abs(slopes[1] - 1) < 0.25 * abs(slopes[0] - 1) < 0.01

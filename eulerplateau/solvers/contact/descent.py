@@ -12,8 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, LoopEnergy, Strands, passed
@@ -69,7 +67,7 @@ class ContactDescent:
                     return state, Status.CONVERGED
                 state = other
                 continue
-            after = self._advance(state) or self.keeping.let_go(state, np.inf)
+            after = self._advance(state) or self.keeping.let_go(state, stuck=True)
             if after is None:
                 return state, Status.STALLED
             state = after

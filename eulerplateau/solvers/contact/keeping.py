@@ -132,18 +132,25 @@ class Keeping:
             gaps = gaps[distinct]
         return None
 
-    def let_go(self, state: Touching, most: float = _ASKED) -> Touching | None:
+    def let_go(self, state: Touching, stuck: bool = False) -> Touching | None:
         """Return the state without the strands that pull at each other; None if none do.
 
-        It is not asked where forces are unbalanced by more than `most`.
+        Those whose pull is certain, or would lead down more steeply than all that the loop
+        can do with them held; where it is stuck, all of them.
         """
-        if state.model.residual > most or not len(state.gaps):
+        if not len(state.gaps) or not (state.forces < 0.0).any():
             return None
-        certain = state.uncertain if most < np.inf else 0.0
-        pushing = state.forces >= -certain
-        if pushing.all():
-            return None
-        return self.without(state, ~pushing)
+        least = 0.0
+        if not stuck:
+            model = state.model
+            rows = self.strands.between(model.x, state.gaps).jacobian()
+            sizes = np.linalg.norm(rows / model.scale, axis=1)
+            steeper = float(np.linalg.norm(model.gradient)) / sizes
+            least = (
+                steeper if model.residual > _ASKED else np.minimum(steeper, state.uncertain)
+            )
+        pulling = state.forces < -least
+        return self.without(state, pulling) if pulling.any() else None
 
     def without(self, state: Touching, let_go: BoolArray) -> Touching:
         """Return the state with some of its gaps (k,) no longer closed."""

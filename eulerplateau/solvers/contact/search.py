@@ -51,16 +51,34 @@ def search(
         return None
     with one_thread():
         found = _near(problem, start, x_loop, load, max_iterations, observe)
-        if found is not None or problem.film.dimension == 2:
+        lost = found is None or found.status is Status.STALLED
+        if not lost or problem.film.dimension == 2:
             return found
-        # A film tied to the mesh as it was given can be spanned across any loop.
-        tied = problem.tied_film()
-        if tied is None:
-            return None
-        energy = tied.energy(problem.loop, load)
+        other = _from_tied(problem, x_loop, load, max_iterations, observe)
+        return other if found is None or (other is not None and other.converged) else found
+
+
+def _from_tied(
+    problem: Problem,
+    x_loop: FloatArray,
+    load: float,
+    max_iterations: int,
+    observe: Callable[[FloatArray], None],
+) -> Equilibrium | None:
+    """Return what a film comes to from where one goes that is tied to its mesh.
+
+    That can be spanned across any loop. None if there is none even then.
+    """
+    tied = problem.tied_film()
+    if tied is None:
+        return None
+    energy, strands = tied.energy(problem.loop, load), strands_of(problem.loop)
+    try:
         state, _ = ContactDescent(energy, strands, max_iterations).run(x_loop)
-        shape = tied.shape(state.model.x)
-        return _near(problem, shape, state.model.x, load, max_iterations, observe)
+    except LinAlgError:
+        return None
+    shape = tied.shape(state.model.x)
+    return _near(problem, shape, state.model.x, load, max_iterations, observe)
 
 
 def _near(
@@ -93,7 +111,9 @@ def _near(
         shape = film.shape(x_loop)
         found = partial(_record, problem, load, film, shape, state, spent)
         own = energy.holds(x_loop) and film.made_at(x_loop)
-        if own or status is Status.STALLED or spent >= max_iterations:
+        # A film that gets stuck away from where it was made may not, made anew.
+        stuck = status is Status.STALLED and state.iteration == 0
+        if own or stuck or spent >= max_iterations:
             return found(status)
     return None if found is None else found(status)
 

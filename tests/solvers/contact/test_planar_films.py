@@ -1,0 +1,195 @@
+"""Planar contact on meshes: polygons converge to the exact films of a thick loop."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.exact.planar import PlanarFilm, planar_film, thresholds
+from eulerplateau.mesh import Disk
+from eulerplateau.solvers import Equilibrium, Problem, Status, solve, sweep
+from tests.helpers import shapes
+
+film_at = cache(planar_film)
+# Lobes, load, diameter: each diameter twice in point contact, then along a line.
+POINT = [
+    (2, 2400.0, 0.05),
+    (2, 3500.0, 0.05),
+    (2, 2600.0, 0.02),
+    (2, 4000.0, 0.02),
+    (2, 2700.0, 0.005),
+    (2, 4000.0, 0.005),
+    (3, 12000.0, 0.02),
+]
+LINE = [(2, 6000.0, 0.05), (2, 7000.0, 0.02), (2, 8000.0, 0.005)]
+
+
+@cache
+def fan(edges: int) -> Disk:
+    """A disk of triangles about its middle: of a film in its plane only the loop counts."""
+    turns, k = 2 * np.pi * np.arange(edges) / edges, np.arange(edges)
+    ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    triangles = np.stack([0 * k, 1 + k, 1 + (k + 1) % edges], axis=1)
+    return shapes.mesh_of(np.concatenate([np.zeros((1, 2)), ring]), triangles)
+
+
+def placed(film: PlanarFilm, mesh: Disk, shift: float = 0.0) -> FloatArray:
+    """The fan with its loop on an exact film, off its tip by so many edges."""
+    x = np.zeros_like(mesh.x)
+    x[mesh.loop, :2] = film.positions((np.arange(mesh.n_b) + shift) / mesh.n_b)
+    return x
+
+
+@cache
+def relaxed(film: tuple[int, float, float], edges: int, shift: float = 0.0) -> Equilibrium:
+    """The polygon that an exact film relaxes to."""
+    mesh, (lobes, load, diameter) = fan(edges), film
+    problem = Problem(mesh, "area", in_plane=True, diameter=diameter)
+    start = placed(film_at(lobes, load, diameter), mesh, shift)
+    found = solve(problem, load, start)
+    assert found.is_minimum
+    return found
+
+
+def force(found: Equilibrium) -> float:
+    assert found.contacts is not None
+    assert (found.contacts.forces > 0).all()
+    return found.contacts.force
+
+
+def length_of_line(found: Equilibrium) -> float:
+    """The contact's length l, as its force F and the force's second moment M tell it.
+
+    A film pushes along a line with its tension, and the rest of F is half at each end:
+    M = (F - sigma l) l^2 / 4 + sigma l^3 / 12. The outermost places say it to an edge.
+    """
+    assert found.contacts is not None
+    pushes, s = found.contacts.forces, found.contacts.s
+    total, middle = pushes.sum(), pushes @ s / pushes.sum()
+    moment = pushes @ (s - middle) ** 2
+    roots = np.roots([-found.load / 6, total / 4, 0.0, -moment])
+    return float(roots[(np.isreal(roots)) & (roots.real > 0)].real.min())
+
+
+def assert_second_order(
+    values: list[float], exact: float, band: float, rest: float
+) -> None:
+    """Of values at edges h, h/2, h/4; their limit is nearer than the last by `rest`."""
+    errors = [value - exact for value in values]
+    assert shapes.fitted_order([4.0, 2.0, 1.0], errors) == pytest.approx(2, abs=band)
+    limit = (4 * values[-1] - values[-2]) / 3
+    assert abs(limit - exact) < rest * abs(errors[-1])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("film", POINT)
+def test_films_that_touch_at_points_converge_with_second_order(
+    film: tuple[int, float, float],
+) -> None:
+    exact = film_at(*film)
+    found = [relaxed(film, edges) for edges in (84, 168, 336)]
+    for each in found:
+        assert each.contacts is not None
+        assert len(each.contacts) == (1 if film[0] == 2 else film[0])
+    energies, forces = [each.energy for each in found], [force(each) for each in found]
+    assert_second_order(energies, exact.energy, 0.02, 0.02)
+    assert_second_order(forces, exact.contact_force, 0.05, 0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("film", LINE)
+def test_films_that_touch_along_a_line_converge_with_second_order(
+    film: tuple[int, float, float],
+) -> None:
+    """Where between two vertices the line ends makes the factor before h^2 uneven."""
+    exact = film_at(*film)
+    found = [relaxed(film, edges) for edges in (84, 168, 336)]
+    energies, forces = [each.energy for each in found], [force(each) for each in found]
+    assert_second_order(energies, exact.energy, 0.05, 0.02)
+    assert_second_order(forces, exact.contact_force, 0.2, 0.2)
+    line, lengths = 2 * exact.contact_length, [length_of_line(each) for each in found]
+    order = shapes.fitted_order([4.0, 2.0, 1.0], [each - line for each in lengths])
+    assert order == pytest.approx(2, abs=0.4)
+    for each in found:
+        assert each.contacts is not None
+        reach = np.ptp(each.contacts.s)
+        assert abs(reach - line) < 2 / len(each.shape.loop)
+
+
+@pytest.mark.parametrize("film", [POINT[3], LINE[0]])
+def test_errors_of_energy_and_force_are_of_second_order(
+    film: tuple[int, float, float],
+) -> None:
+    exact = film_at(*film)
+    found = [relaxed(film, edges) for edges in (84, 168)]
+    for values, limit, band in (
+        ([each.energy for each in found], exact.energy, 0.02),
+        ([force(each) for each in found], exact.contact_force, 0.3),
+    ):
+        errors = np.abs(np.array(values) - limit)
+        assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=band)
+
+
+@pytest.mark.parametrize("film", [POINT[1], POINT[5], LINE[0]])
+def test_slopes_of_the_energy_are_force_and_area(film: tuple[int, float, float]) -> None:
+    _, load, diameter = film
+    found = relaxed(film, 84)
+
+    def energy(load: float, diameter: float) -> float:
+        problem = Problem(fan(84), "area", in_plane=True, diameter=diameter)
+        return solve(problem, load, found).energy
+
+    h = 2e-3 * diameter
+    slope = (energy(load, diameter + h) - energy(load, diameter - h)) / (2 * h)
+    assert force(found) == pytest.approx(slope, rel=1e-4)
+    h = 1e-3 * load
+    slope = (energy(load + h, diameter) - energy(load - h, diameter)) / (2 * h)
+    assert found.film_energy / load == pytest.approx(slope, rel=1e-5)
+
+
+@pytest.mark.parametrize("film", [POINT[1], POINT[-1]])
+def test_where_on_its_edges_a_loop_touches_itself_makes_little_difference(
+    film: tuple[int, float, float],
+) -> None:
+    """Little beside the error of the edges, of the same order; and no other index."""
+    exact, spreads = film_at(*film), []
+    for edges in (60, 120):
+        found = [relaxed(film, edges, shift) for shift in (0.0, 0.25, 0.5)]
+        forces = [force(each) for each in found]
+        spreads.append(np.ptp(forces))
+        assert spreads[-1] < 0.1 * abs(forces[0] - exact.contact_force)
+        for each in found:
+            assert each.stability is not None
+            assert each.stability.n_unstable == 0
+    assert np.log2(spreads[0] / spreads[1]) > 1.75
+
+
+def test_a_sweep_in_the_plane_passes_the_onsets_of_contact_and_comes_back() -> None:
+    diameter, mesh = 0.02, fan(84)
+    limits = thresholds(2, diameter)
+    loads = [1800.0, 2200.0, 2600.0, 3200.0, 4000.0, 5600.0, 6200.0]
+    problem = Problem(mesh, "area", in_plane=True, diameter=diameter)
+    start = placed(film_at(2, loads[0]), mesh)
+    rows = list(sweep(problem, [*loads, *loads[-2::-1]], start))
+    up, down = rows[: len(loads)], rows[: len(loads) - 2 : -1]
+    for load, found, back in zip(loads, up, down, strict=True):
+        assert found.status is Status.CONVERGED
+        assert found.is_minimum
+        assert found.contacts is not None
+        assert (found.contacts.forces > 0).all()
+        assert (np.abs(found.contacts.gaps) < 1e-10).all()
+        touching = (load > limits.sigma_contact, load > limits.sigma_line_contact)
+        assert (len(found.contacts) > 0, len(found.contacts) > 1) == touching
+        # Along a line nothing is held between two vertices.
+        between = 1e-2 * diameter if touching[1] else 1e-10
+        assert found.contacts.smallest_gap > -between
+        assert back.energy == pytest.approx(found.energy, rel=1e-6)
+    # Minima of energies linear in the load: concave, and area is the slope.
+    energies = np.array([found.energy for found in up])
+    areas = np.array([found.film_energy / found.load for found in up])
+    slopes = np.diff(energies) / np.diff(loads)
+    assert (slopes < areas[:-1]).all()
+    assert (slopes > areas[1:]).all()

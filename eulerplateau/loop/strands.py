@@ -134,9 +134,9 @@ class Strands:
             close: BoolArray = np.minimum(off, whole - off) < reach
             return close
 
-        same = np.logical_and(near(gaps.s, others.s), near(gaps.t, others.t))
-        turned = np.logical_and(near(gaps.s, others.t), near(gaps.t, others.s))
-        unlike: BoolArray = ~np.logical_or(same, turned).any(axis=1)
+        same = near(gaps.s, others.s) & near(gaps.t, others.t)
+        turned = near(gaps.s, others.t) & near(gaps.t, others.s)
+        unlike: BoolArray = np.logical_not(np.any(same | turned, axis=1))
         return unlike
 
     def distinct(self, gaps: Gaps) -> BoolArray:

@@ -134,9 +134,9 @@ class Strands:
             close: BoolArray = np.minimum(off, whole - off) < reach
             return close
 
-        alike: BoolArray = near(gaps.s, others.s) & near(gaps.t, others.t)
-        alike |= near(gaps.s, others.t) & near(gaps.t, others.s)
-        unlike: BoolArray = ~alike.any(axis=1)
+        same = near(gaps.s, others.s) & near(gaps.t, others.t)
+        turned = near(gaps.s, others.t) & near(gaps.t, others.s)
+        unlike: BoolArray = np.logical_not(np.any(same | turned, axis=1))
         return unlike
 
     def distinct(self, gaps: Gaps) -> BoolArray:

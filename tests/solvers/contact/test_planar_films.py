@@ -156,7 +156,7 @@ def test_where_on_its_edges_a_loop_touches_itself_makes_little_difference(
 ) -> None:
     """Little beside the error of the edges, of the same order; and no other index."""
     exact, spreads = film_at(*film), []
-    for edges in (60, 120):
+    for edges in (84, 168):
         found = [relaxed(film, edges, shift) for shift in (0.0, 0.25, 0.5)]
         forces = [force(each) for each in found]
         spreads.append(np.ptp(forces))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,9 +10,18 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import PlanarFilm, planar_film, thresholds
+from eulerplateau.loop import Gaps, HeldGaps, strands_of
 from eulerplateau.mesh import Disk
-from eulerplateau.solvers import Equilibrium, Problem, Status, solve, sweep
+from eulerplateau.solvers import (
+    Equilibrium,
+    Problem,
+    Status,
+    TangentModel,
+    solve,
+    sweep,
+)
 from tests.helpers import shapes
+from tests.helpers.equilibria import critical_point, loop_energy
 
 film_at = cache(planar_film)
 # Lobes, load, diameter: each diameter twice in point contact, then along a line.
@@ -24,6 +34,7 @@ POINT = [
     (2, 4000.0, 0.005),
     (3, 12000.0, 0.02),
 ]
+LINES_OF_THREE = (3, 60000.0, 0.02)
 LINE = [(2, 6000.0, 0.05), (2, 7000.0, 0.02), (2, 8000.0, 0.005)]
 
 
@@ -74,6 +85,24 @@ def length_of_line(found: Equilibrium) -> float:
     return float(roots[(np.isreal(roots)) & (roots.real > 0)].real.min())
 
 
+def held_along_lines(edges: int) -> tuple[TangentModel, float]:
+    """Three lobes whose strands are held where the exact film's touch; their energy."""
+    mesh, (lobes, load, diameter) = fan(edges), LINES_OF_THREE
+    film = film_at(*LINES_OF_THREE)
+    problem = Problem(mesh, "area", in_plane=True, diameter=diameter)
+    place, (first, last) = np.arange(edges) / edges, film.half_lobe.ends[1:3]
+    flank = place[(place > first) & (place < last)]
+    tips = np.arange(lobes)[:, None] / lobes
+    s, t = ((tips + side * flank).ravel() % 1 for side in (1, -1))
+    gaps = Gaps(s, t, np.zeros(len(s), dtype=bool))
+    energy = loop_energy(problem, load)
+    held = HeldGaps(energy.constraint, strands_of(problem.loop), gaps)
+    start = held.project(placed(film, mesh)[mesh.loop, :2])
+    assert start is not None
+    model = critical_point(replace(energy, constraint=held), start)
+    return model, energy.change(np.zeros_like(start), model.x)
+
+
 def assert_second_order(
     values: list[float], exact: float, band: float, rest: float
 ) -> None:
@@ -117,6 +146,28 @@ def test_films_that_touch_along_a_line_converge_with_second_order(
         assert each.contacts is not None
         reach = np.ptp(each.contacts.s)
         assert abs(reach - line) < 2 / len(each.shape.loop)
+
+
+@pytest.mark.slow
+def test_three_lobes_along_lines_converge_and_share_them_at_no_cost() -> None:
+    """Lobes may exchange line: heads and arcs keep their shape, line is as long as before.
+
+    So two modes are neutral; on polygons they are so as edges are short, of either sign.
+    """
+    exact = film_at(*LINES_OF_THREE)
+    energies, forces, lowest = [], [], []
+    for edges in (180, 360):
+        model, energy = held_along_lines(edges)
+        energies.append(energy - exact.energy)
+        forces.append(-model.tensions[edges:].sum() - exact.contact_force)
+        lowest.append(model.eigenvalues[:3])
+        # What the film pushes with on an edge: so exactly is a line's end known.
+        assert abs(forces[-1]) < exact.tension / edges
+    assert np.log2(energies[0] / energies[1]) == pytest.approx(2, abs=0.4)
+    pairs = np.abs(lowest)
+    np.testing.assert_allclose(pairs[:, 0], pairs[:, 1], rtol=1e-6)
+    assert pairs[0, 0] / pairs[1, 0] > 1.5
+    assert lowest[1][2] > 0
 
 
 @pytest.mark.parametrize("film", [POINT[3], LINE[0]])

@@ -1,0 +1,1 @@
+"""Planar films that touch themselves: polygons against the exact films."""

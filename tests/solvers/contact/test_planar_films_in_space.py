@@ -74,6 +74,7 @@ def test_a_rod_that_does_not_resist_twist_leaves_the_plane() -> None:
     assert force(found) > 0
 
 
+@pytest.mark.slow
 def test_force_is_the_slope_of_the_twisted_film_s_energy_in_the_diameter() -> None:
     found = solve(in_space(None), POINT, flat(POINT))
 

@@ -165,6 +165,7 @@ def test_formulas_are_drawn_in_their_font(site: Path, browser: Browser) -> None:
         browser.open(site / f"{page.stem}.html")
         browser.wait_for(lambda: browser.evaluate(FONT))
         fractions = browser.evaluate(FRACTIONS)
+        assert len(fractions) == "".join(blocks(page, "math")).count("\\frac")
         for (top, middle), (below, bottom) in fractions:
             assert top < middle <= below < bottom
         assert_sound(browser, site)

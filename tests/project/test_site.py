@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from markdown import markdown
 from math_core import LatexError
 
 import eulerplateau
@@ -54,6 +55,14 @@ def test_formulas_are_formulas() -> None:
     for wrong in (r"\fraction{1}{2}", r"\frac{1}", "{x", r"\left( x"):
         with pytest.raises(LatexError):
             mathml(wrong)
+
+
+def test_no_formula_is_displayed_as_code() -> None:
+    for page in PAGES:
+        html = markdown(page.read_text(), extensions=["fenced_code", "tables"])
+        for code in re.findall("<pre><code>(.*?)</code></pre>", html, re.DOTALL):
+            without_comments = re.sub("#.*", "", code)
+            assert not re.search("[αβκπσ∂∫∮√²³½]", without_comments), page
 
 
 @pytest.fixture(scope="module")

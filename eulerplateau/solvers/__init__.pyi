@@ -23,3 +23,4 @@ from .solving import (
     sweep as sweep,
 )
 from .start import displaced as displaced
+from .tangent_space import Directional as Directional, directional as directional

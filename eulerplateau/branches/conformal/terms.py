@@ -17,8 +17,10 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.conformal import (
     Basis,
+    Blocks,
     Crossing,
     Curve,
+    bending_blocks,
     bending_gradient,
     bending_hessian,
     crossing,
@@ -26,6 +28,7 @@ from eulerplateau.exact.conformal import (
     length_hessian,
     loop_length,
     precondition,
+    writhe_blocks,
     writhe_gradient,
     writhe_hessian,
     writhe_modulo_two,
@@ -58,6 +61,11 @@ class SmoothLoop:
     def crossing(self) -> Crossing:
         """Where the strands of its waist are nearest."""
         return crossing(self.basis, self.coefficients)
+
+    @cached_property
+    def writhe_gradient(self) -> FloatArray:
+        """Its gradient (size,)."""
+        return writhe_gradient(self.basis, self.curve)
 
 
 @dataclass(frozen=True)
@@ -117,6 +125,12 @@ class Unknowns:
         """Return the derivative (size + m, 1) by x of a gradient (size,) by the loop's."""
         return np.concatenate([self.scale * gradient, 0 * self.frame_scale])[:, None]
 
+    def product(self, blocks: Blocks, step: FloatArray) -> FloatArray:
+        """Return a second derivative times a step (size + m, 1)."""
+        return self.slope(
+            blocks.product(self.basis, self.scale * step[: self.basis.size, 0])
+        )
+
     def curvature(self, hessian: FloatArray) -> FloatArray:
         """Return the second derivative by x of that (size, size) by coefficients."""
         m = len(self.frame_scale)
@@ -139,6 +153,11 @@ class SmoothBending(Term):
         """Return the second derivative (size, size)."""
         u = self.unknowns
         return u.curvature(bending_hessian(u.basis, u.loop(x).curve))
+
+    def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the second derivative times a step (size, 1)."""
+        u = self.unknowns
+        return u.product(bending_blocks(u.loop(x).curve), step)
 
 
 @dataclass(frozen=True)
@@ -194,10 +213,17 @@ class SmoothTwist(EvenTwist):
         stiff: FloatArray = 4 * math.pi**2 * self.gamma * slope @ slope.T
         return stiff - 2 * math.pi * self.moment(x) * second
 
+    def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the second derivative times a step (size, 1)."""
+        u, slope = self.unknowns, self.slope(x)
+        bent = u.product(writhe_blocks(u.loop(x).curve), step)
+        stiff = 4 * math.pi**2 * self.gamma * float(np.vdot(slope, step)) * slope
+        return stiff - 2 * math.pi * self.moment(x) * bent
+
     def slope(self, x: FloatArray) -> FloatArray:
         """Return dWr/dx (size, 1)."""
         u = self.unknowns
-        return u.slope(writhe_gradient(u.basis, u.loop(x).curve))
+        return u.slope(u.loop(x).writhe_gradient)
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from eulerplateau.branches import (
     special_at,
 )
 from eulerplateau.branches.conformal import (
+    CurvedFamily,
     SmoothFamily,
     critical_moment,
     films_by_writhe,
@@ -77,6 +78,25 @@ def test_the_disk_is_lost_where_the_theory_says_all_along_a_curve() -> None:
     (turn,) = (point for point in points if point.special == Special.TURN)
     assert turn.values[1] == pytest.approx(48 * pi**3, rel=1e-12)
     assert turn.values[0] == pytest.approx(0, abs=1e-9)
+
+
+def test_the_disk_s_threshold_over_the_natural_curvature_of_its_rod() -> None:
+    """sigma_2(q) = 96 pi^3 [1 - q (q + g) / (q + 4 g)], to 1e-10."""
+    g, q = 0.75, 0.5
+    basis = make_basis(6, TWISTED)
+    near = 96 * pi**3 * (1 - q * (q + g) / (q + 4 * g))
+    values = {"load": near, "twist_ratio": g, "link": 0.0, "rest_curvature": q}
+    family = CurvedFamily(basis, values, "load")
+    flat = family.unknowns.x(disk(basis, near).coefficients)
+    points = followed(
+        family, flat, (near, "rest_curvature", q), (1000.0, 3000.0), (0.1, 1.2)
+    )
+    loads, curvatures = np.transpose([point.values for point in points])
+    assert curvatures.min() < 0.1
+    assert curvatures.max() > 1.2
+    exact = 96 * pi**3 * (1 - curvatures * (curvatures + g) / (curvatures + 4 * g))
+    np.testing.assert_allclose(loads, exact, rtol=1e-10)
+    assert all(point.course.symmetric for point in points)
 
 
 @pytest.mark.parametrize("load", [50.0, 100.0, 500.0, 1000.0])
@@ -160,6 +180,9 @@ def test_a_link_leaves_two_folds_of_the_lobes_bifurcation_that_meet_in_its_cusp(
     _, points = of_lobes(1900.0, "link", (-2e-3, 2e-3), 0.01)
     assert not any(point.course.symmetric for point in points)
     assert points[0].special == Special.CUSP
+    # What a link takes from flat lobes, whose half turns it leaves.
+    mirrors = {f"mirror across {axis} axis" for axis in ("long", "middle", "short")}
+    assert set(points[0].course.breaks) == mirrors | {"inversion"}
     loads, links = np.transpose([point.values for point in points])
     assert links[0] == pytest.approx(0, abs=1e-9)
     assert links.min() < -2e-3

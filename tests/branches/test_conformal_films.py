@@ -23,8 +23,9 @@ from eulerplateau.errors import SpecError
 from eulerplateau.exact.conformal import GENERAL, disk, edge, make_basis
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.solvers import tangent_model
-from tests.helpers.command import run_here
+from tests.helpers.command import command_line, run_here
 from tests.helpers.conformal_films import twisted
+from tests.helpers.processes import shown_at_a_terminal
 
 LOADS = (0.2, 0.5, 1.0, 1.7, 2.9)  # nu, below n^2 - 1 for n = 2, 3, 4
 
@@ -190,8 +191,18 @@ def test_command_prints_json_and_says_what_is_no_film():
     done = run_here(*args, "--start", "lobes")
     numbers = json.loads(done.stdout)
     assert done.returncode == 0
+    # A bar is for people: this is no terminal.
+    assert done.stderr == ""
     assert numbers["status"] == "converged"
     assert numbers["energy"] == pytest.approx(planar_film(2, 1700.0).energy, rel=1e-10)
     pinched = run_here(*args, "--start", "eight", "--link", "0.5")
     assert pinched.returncode == 4
     assert json.loads(pinched.stdout)["pinch"] == "opens"
+
+
+@pytest.mark.slow
+def test_at_a_terminal_the_command_shows_how_far_it_has_followed_the_film():
+    args = ["film", "--sigma-hat", 1700, "--twist-ratio", 0.7, "--start", "lobes"]
+    shown = shown_at_a_terminal(command_line(*args, "--link", 0.05))
+    assert b"writhe 0.0" in shown
+    assert b"film/s" in shown

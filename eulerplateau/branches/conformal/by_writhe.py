@@ -12,7 +12,7 @@ writhe is stable with a rod where E_0'' + 8 pi^2 C/B > 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import cast
 
@@ -73,6 +73,16 @@ def films_by_writhe(
         place = next_place(place, CONTROL)
         if place is not None:
             place = replace(place, point=resolved(place.point, CONTROL))
+
+
+def told(
+    points: Iterator[BranchPoint], tell: Callable[[str], None]
+) -> Iterator[BranchPoint]:
+    """Yield films of given writhe; say of each where on the way it is."""
+    for point in points:
+        writhe = smooth_family(point).twist(point.value).writhe(point.x)
+        tell(f"writhe {writhe:.3f}")
+        yield point
 
 
 def lobes_at(load: float) -> BranchPoint:

@@ -8,14 +8,19 @@ that way no film of this branch is left to follow.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import chain, pairwise
 
 from scipy.optimize import brentq
 
-from eulerplateau.branches.conformal.by_writhe import CONTROL, NARROWEST, films_by_writhe
+from eulerplateau.branches.conformal.by_writhe import (
+    CONTROL,
+    NARROWEST,
+    films_by_writhe,
+    told,
+)
 from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
@@ -102,6 +107,7 @@ def rod_film(
     twist_ratio: float = 0.0,
     link: float = 0.0,
     rest_curvature: float = 0.0,
+    tell: Callable[[str], None] = lambda where: None,
 ) -> RodFilm:
     """Return the film that a start leads to at a load, with a rod turned `link` times.
 
@@ -116,6 +122,7 @@ def rod_film(
         right-handed where it starts, with no link.
     rest_curvature : float
         q = k0 L / 2 pi, of a rod of link 0: the film is followed to it as well.
+    tell : is told how far that has come, film by film
 
     Raises
     ------
@@ -124,13 +131,15 @@ def rod_film(
     """
     checked(load, twist_ratio, link, rest_curvature)
     if start is Start.LOBES and link < 0:
-        return _mirror_image(rod_film(start, load, twist_ratio, -link))
+        return _mirror_image(rod_film(start, load, twist_ratio, -link, tell=tell))
     values = {"load": load, "twist_ratio": twist_ratio, "link": link}
-    found = _straight_rod(start, values)
-    return _measured(curved(found, rest_curvature) if rest_curvature else found)
+    found = _straight_rod(start, values, tell)
+    return _measured(curved(found, rest_curvature, tell) if rest_curvature else found)
 
 
-def _straight_rod(start: Start, values: Mapping[str, float]) -> BranchPoint:
+def _straight_rod(
+    start: Start, values: Mapping[str, float], tell: Callable[[str], None]
+) -> BranchPoint:
     """Return the film that a start leads to, with a rod that is straight by nature."""
     load, twist_ratio, link = values["load"], values["twist_ratio"], values["link"]
     if start is Start.DISK:
@@ -140,7 +149,7 @@ def _straight_rod(start: Start, values: Mapping[str, float]) -> BranchPoint:
             f"found {load:g}; lobes exist above {BUCKLING:.6g}, where the disk buckles"
         )
         raise SpecError("load", problem)
-    path = films_by_writhe(load)
+    path = told(films_by_writhe(load), tell)
     if start is Start.LOBES and link == 0.0:
         return _with_rod(next(iter(path)), values)
     between = _between if start is Start.LOBES else _twisted_between

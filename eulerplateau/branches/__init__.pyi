@@ -23,7 +23,7 @@ from .locus import (
     locus_start as locus_start,
     special_at as special_at,
 )
-from .locus_between import Special as Special
+from .locus_between import Resolution as Resolution, Special as Special
 from .locus_point import LocusPoint as LocusPoint
 from .point import (
     BranchPoint as BranchPoint,

@@ -21,6 +21,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.locus_between import (
     Ahead,
+    Resolution,
     Special,
     corrected,
     special_points,
@@ -38,7 +39,11 @@ from eulerplateau.solvers import RESIDUAL_TOLERANCE, tangent_model
 
 _EASY = 5  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
+_AS_IT_IS = Resolution()
 _FIRST_LEAST = 4  # points before which a curve does not come back to its start
+
+# Where a curve began, and its direction there.
+Home = tuple[Motion, ...]
 
 
 class End(StrEnum):
@@ -140,26 +145,32 @@ def _broken(special: SpecialPoint, second: str) -> tuple[str, ...]:
 
 
 def follow_locus(
-    start: LocusPoint, stop: Callable[[LocusPoint], bool] = lambda point: False
+    start: LocusPoint,
+    stop: Callable[[LocusPoint], bool] = lambda point: False,
+    resolution: Resolution = _AS_IT_IS,
 ) -> Iterator[LocusPoint]:
     """Yield the points of a curve from a start both ways, special ones among them.
 
     The last one each way says why the curve ends there. Arclength counts from the start,
     negative the second way. Where `stop` is true strands meet, and the curve ends.
     """
+    start = resolution.resolved(start)
     yield start
     for way, first in ((1, start), (-1, start.reversed())):
         end = ""
-        for point in _arm(first, stop):
+        for point in _arm(first, stop, resolution):
             yield replace(point, arclength=way * point.arclength)
             end = point.end
         if end == End.CLOSED:
             return
 
 
-def _arm(start: LocusPoint, stop: Callable[[LocusPoint], bool]) -> Iterator[LocusPoint]:
+def _arm(
+    start: LocusPoint, stop: Callable[[LocusPoint], bool], resolution: Resolution
+) -> Iterator[LocusPoint]:
     """Yield the points after a start, in the direction it heads."""
     control = start.course.controls[0]
+    home: Home = start.place, start.direction
     before, step, ahead = start, control.first_step, Ahead.straight(start)
     for number in range(control.max_points):
         after = None
@@ -170,13 +181,16 @@ def _arm(start: LocusPoint, stop: Callable[[LocusPoint], bool]) -> Iterator[Locu
             yield replace(before, special="", end=End.LOST)
             return
         yield from special_points(before, after)
-        end = End.STRANDS if stop(after) else _end(start, before, after, number)
+        end = End.STRANDS if stop(after) else _end(home, before, after, number)
         yield replace(after, end=end)
         if end:
             return
         if after.corrections <= _EASY:
             step = min(1.5 * step, control.largest_step)
-        before, ahead = after, Ahead.after(before, after)
+        ahead, before = Ahead.after(before, after), resolution.resolved(after)
+        if before is not after:
+            ahead = Ahead.straight(before)
+            home = tuple(resolution.carried(motion, after, before) for motion in home)
 
 
 def _advance(ahead: Ahead, step: float) -> LocusPoint | None:
@@ -192,23 +206,24 @@ def _advance(ahead: Ahead, step: float) -> LocusPoint | None:
     return replace(after, arclength=before.arclength + step)
 
 
-def _end(start: LocusPoint, before: LocusPoint, after: LocusPoint, number: int) -> str:
+def _end(home: Home, before: LocusPoint, after: LocusPoint, number: int) -> str:
     """Return why a curve ends at a point, or nothing."""
     course = after.course
     if not course.inside(after.values):
         return End.WINDOW
     if after.model.residual > RESIDUAL_TOLERANCE:
         return End.UNBALANCED
-    if number >= _FIRST_LEAST and _passed(start, before, after):
+    if number >= _FIRST_LEAST and _passed(home, before, after):
         return End.CLOSED
     return End.ENOUGH if number + 1 == course.controls[0].max_points else ""
 
 
-def _passed(start: LocusPoint, before: LocusPoint, after: LocusPoint) -> bool:
+def _passed(home: Home, before: LocusPoint, after: LocusPoint) -> bool:
     """Return whether the start lies between two points of its curve."""
-    way, there = after.place - before.place, start.place - before.place
+    place, direction = home
+    way, there = after.place - before.place, place - before.place
     length = after.dot(way, way)
     part = after.dot(way, there) / length
     off = there - way * part
     near = after.dot(off, off) < 0.05**2 * length
-    return 0 < part <= 1 and near and after.dot(way, start.direction) > 0
+    return 0 < part <= 1 and near and after.dot(way, direction) > 0

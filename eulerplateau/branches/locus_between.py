@@ -32,6 +32,18 @@ class Special(StrEnum):
     TURN = "turn"
 
 
+class Resolution:
+    """How well a curve's loops are resolved: here as they are, whatever stands for them."""
+
+    def resolved(self, point: LocusPoint) -> LocusPoint:
+        """Return the same point with as many unknowns as it needs, or itself."""
+        return point
+
+    def carried(self, motion: Motion, old: LocusPoint, new: LocusPoint) -> Motion:
+        """Return what a motion in the unknowns of one point is in those of another."""
+        return motion
+
+
 @dataclass(frozen=True)
 class Ahead:
     """Where a curve goes on from a point, as far as it turned from the one before.

@@ -11,6 +11,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import (
     BIFURCATION,
     LocusPoint,
+    Resolution,
     Special,
     StepControl,
     follow_locus,
@@ -19,13 +20,16 @@ from eulerplateau.branches import (
 )
 from eulerplateau.branches.conformal import (
     CurvedFamily,
+    Harmonics,
     SmoothFamily,
     critical_moment,
     films_by_writhe,
+    in_basis,
     smooth_family,
     stiffness,
+    tail,
 )
-from eulerplateau.branches.conformal.by_writhe import lobes_at
+from eulerplateau.branches.conformal.by_writhe import CONTROL, lobes_at
 from eulerplateau.exact.conformal import TWISTED, disk, make_basis
 from eulerplateau.threads import one_thread
 
@@ -36,6 +40,7 @@ def followed(
     near: tuple[float, str, float],
     *windows: tuple[float, float],
     largest: float = 0.1,
+    resolution: Resolution | None = None,
 ) -> list[LocusPoint]:
     """The curve through a bifurcation near a value of the family's parameter."""
     value, second, other = near
@@ -47,7 +52,7 @@ def followed(
     with one_thread():
         special = special_at(family, flat, value, BIFURCATION)
         start = locus_start(special, second, other, controls)  # type: ignore[arg-type]
-        return list(follow_locus(start))
+        return list(follow_locus(start, resolution=resolution or Resolution()))
 
 
 def of_disk(
@@ -142,6 +147,29 @@ def of_lobes(
     near = load, second, values[second]
     points = followed(family, flat.x, near, (1850.0, 2090.0), window, largest=largest)
     return family, points
+
+
+@pytest.mark.slow
+def test_harmonics_are_added_where_a_curve_asks_for_them() -> None:
+    """From too few, flat lobes twist at the C/B that E_0'' of better films asks for."""
+    fine = lobes_at(1900.0)
+    crowding = smooth_family(fine).basis.crowding
+    coarse = in_basis(fine, make_basis(48, TWISTED, crowding), CONTROL)
+    assert coarse is not None
+    assert tail(coarse) > 1e-10
+    ratio = -stiffness(coarse) / (8 * pi**2)
+    values = {"load": 1900.0, "twist_ratio": ratio, "link": 0.0}
+    family = SmoothFamily(smooth_family(coarse).basis, values, "load")
+    near, windows = (1900.0, "twist_ratio", ratio), ((1890.0, 2050.0), (0.0, 1.0))
+    points = followed(
+        family, coarse.x, near, *windows, largest=0.03, resolution=Harmonics()
+    )
+    *_, last = (point for point in points if point.arclength > 0)
+    assert len(last.model.x) > len(points[0].model.x) > len(coarse.x)
+    for point in (points[0], last):
+        load, ratio = (float(value) for value in point.values)
+        expected = -stiffness(lobes_at(load)) / (8 * pi**2)
+        assert ratio == pytest.approx(expected, rel=1e-8)
 
 
 @pytest.mark.slow

@@ -198,12 +198,16 @@ def _by_columns(
 
 
 def stability(model: TangentModel) -> Stability:
-    """Return the spectrum at an equilibrium.
+    """Return the spectrum at an equilibrium."""
+    return spectrum_of(model.eigenvalues)
 
-    The error bound is the backward error of the symmetric eigensolver and of the projected
+
+def spectrum_of(values: FloatArray) -> Stability:
+    """Return all eigenvalues, ascending, with the error they have.
+
+    The bound is the backward error of the symmetric eigensolver and of the projected
     Hessian, a small multiple of eps |H|_2 (Weyl).
     """
-    values = model.eigenvalues
     if len(values) == 0:
         return Stability(values, 0.0)
     eps = float(np.finfo(np.float64).eps)

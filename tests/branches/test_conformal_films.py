@@ -1,7 +1,9 @@
 """Films without a mesh whose rod resists twist: exact thresholds, balance, energies."""
 
 import json
+from dataclasses import replace
 from functools import cache
+from itertools import islice
 from math import pi, sqrt
 
 import numpy as np
@@ -17,6 +19,7 @@ from eulerplateau.branches.conformal import (
     films_by_writhe,
     pinched_eight,
     rod_film,
+    smooth_family,
     stiffness,
 )
 from eulerplateau.errors import SpecError
@@ -184,6 +187,19 @@ def test_twist_opens_or_presses_the_pinched_eight():
     assert (opens, presses, rests) == ("opens", "presses", "rests")
     left = pinched_eight(1700.0, 0.7, -0.6)
     assert (left.writhe, left.pinch) == (-1.0, "opens")
+
+
+def test_the_spectrum_in_space_is_that_of_all_harmonics_in_one_matrix():
+    """By half-turns that each displacement keeps; the loop is neither flat nor round."""
+    *_, point = islice(films_by_writhe(1700.0), 5)
+    family = smooth_family(point)
+    assert abs(family.twist(point.value).writhe(point.x)) > 0.05
+    whole = make_basis(family.basis.harmonics, GENERAL, family.basis.crowding)
+    general = replace(family, basis=whole)
+    x = general.carried(family, point.x)
+    expected = tangent_model(general.energy(point.value), x).eigenvalues
+    found = family.in_space(point).eigenvalues
+    np.testing.assert_allclose(found, expected, atol=1e-11 * np.abs(expected).max())
 
 
 def test_command_prints_json_and_says_what_is_no_film():

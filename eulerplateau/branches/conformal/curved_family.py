@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,16 @@ from eulerplateau.branches.conformal.family import SmoothFamily
 from eulerplateau.branches.conformal.frames import Frames
 from eulerplateau.branches.conformal.rod_term import SmoothRod
 from eulerplateau.branches.conformal.terms import Unknowns
-from eulerplateau.exact.conformal import Curve, gauge_fields, gauge_modes, slides
+from eulerplateau.branches.point import BranchPoint
+from eulerplateau.exact.conformal import (
+    GENERAL,
+    Curve,
+    gauge_fields,
+    gauge_modes,
+    make_basis,
+    slides,
+)
+from eulerplateau.solvers import Stability, stability, tangent_model
 
 
 @dataclass(frozen=True)
@@ -38,6 +47,13 @@ class CurvedFamily(SmoothFamily):
     def tail(self, x: FloatArray) -> float:
         """Return the relative error of truncation, roughly: the loop's, or the frame's."""
         return max(super().tail(x), self.frames.tail(self.unknowns.others(x)))
+
+    def in_space(self, point: BranchPoint) -> Stability:
+        """Return the spectrum among all loops, not those of the basis's symmetry alone."""
+        basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
+        family = replace(self, basis=basis)
+        energy = family.energy(point.value)
+        return stability(tangent_model(energy, family.carried(self, point.x)))
 
     def carried(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
         """Return what stands here for a film of another family, of the same grid."""

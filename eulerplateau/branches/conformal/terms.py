@@ -69,6 +69,26 @@ class SmoothLoop:
 
 
 @dataclass(frozen=True)
+class LoopBeside(SmoothLoop):
+    """A loop as displacements of another symmetry than its own find it.
+
+    `basis` is theirs, and all coefficients there are 0.
+    """
+
+    itself: SmoothLoop
+
+    @cached_property
+    def curve(self) -> Curve:
+        """The loop at the grid."""
+        return self.itself.curve
+
+    @cached_property
+    def writhe(self) -> float:
+        """Wr."""
+        return self.itself.writhe
+
+
+@dataclass(frozen=True)
 class Unknowns:
     """What stands for a loop of a basis, and for a frame along it if that is asked for.
 
@@ -90,6 +110,13 @@ class Unknowns:
         frame_waves : (m,) float, the wavenumbers of the frame
         """
         return cls(basis, precondition(basis), 1 / np.sqrt(1 + frame_waves**2))
+
+    @classmethod
+    def beside(cls, basis: Basis, loop: SmoothLoop) -> Unknowns:
+        """Return those of displacements of another symmetry from a loop: it is at x = 0."""
+        found, still = cls.of(basis, np.zeros(0)), np.zeros((basis.size, 1))
+        found._known.append((still, LoopBeside(basis, still[:, 0], loop)))
+        return found
 
     @property
     def scales(self) -> FloatArray:

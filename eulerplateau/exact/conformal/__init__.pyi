@@ -1,5 +1,6 @@
 from .basis import (
     GENERAL as GENERAL,
+    HALF_TURNS as HALF_TURNS,
     PLANAR as PLANAR,
     TWISTED as TWISTED,
     Basis as Basis,

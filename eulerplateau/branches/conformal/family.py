@@ -154,8 +154,7 @@ class SmoothFamily:
         moves = np.linalg.qr(free * scale[:, None], mode="complete")[0][:, free.shape[1] :]
         coordinates = Columns(moves, scale)
         hessian = coordinates.hessian(energy, still, point.model.tensions)
-        values: FloatArray = np.linalg.eigvalsh(hessian)
-        return values
+        return np.linalg.eigvalsh(hessian).astype(np.float64, copy=False)
 
     def _values(self, value: float) -> Mapping[str, float]:
         return {**self.values, self.parameter: value}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -14,14 +14,12 @@ from eulerplateau.branches.conformal.rod_term import SmoothRod
 from eulerplateau.branches.conformal.terms import Unknowns
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.exact.conformal import (
-    GENERAL,
     Curve,
     gauge_fields,
     gauge_modes,
-    make_basis,
     slides,
 )
-from eulerplateau.solvers import Stability, stability, tangent_model
+from eulerplateau.solvers import Stability
 
 
 @dataclass(frozen=True)
@@ -49,11 +47,8 @@ class CurvedFamily(SmoothFamily):
         return max(super().tail(x), self.frames.tail(self.unknowns.others(x)))
 
     def in_space(self, point: BranchPoint) -> Stability:
-        """Return the spectrum among all loops, not those of the basis's symmetry alone."""
-        basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
-        family = replace(self, basis=basis)
-        energy = family.energy(point.value)
-        return stability(tangent_model(energy, family.carried(self, point.x)))
+        """Return the spectrum among all loops and frames."""
+        return self.at_once(point)
 
     def carried(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
         """Return what stands here for a film of another family, of the same grid."""

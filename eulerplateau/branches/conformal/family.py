@@ -22,6 +22,7 @@ from eulerplateau.branches.conformal.terms import (
 )
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.exact.conformal import (
+    GENERAL,
     HALF_TURNS,
     TWISTED,
     Basis,
@@ -32,7 +33,7 @@ from eulerplateau.exact.conformal import (
     make_basis,
 )
 from eulerplateau.loop import LoopEnergy, Term
-from eulerplateau.solvers import Columns, Stability, spectrum_of
+from eulerplateau.solvers import Columns, Stability, spectrum_of, stability, tangent_model
 
 
 @dataclass(frozen=True)
@@ -140,6 +141,13 @@ class SmoothFamily:
         """Return what stands here for a film of another family, theta kept."""
         coefficients = other.unknowns.loop(x).coefficients
         return self.unknowns.x(self.basis.transfer(other.basis, coefficients))
+
+    def at_once(self, point: BranchPoint) -> Stability:
+        """Return the spectrum among all loops by one matrix, whatever the energy is."""
+        basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
+        family = replace(self, basis=basis)
+        energy = family.energy(point.value)
+        return stability(tangent_model(energy, family.carried(self, point.x)))
 
     def _beside(self, symmetry: Family, point: BranchPoint) -> FloatArray:
         """Return the eigenvalues of displacements of another symmetry than the loop's.

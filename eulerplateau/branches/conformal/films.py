@@ -8,7 +8,7 @@ that way no film of this branch is left to follow.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import chain, pairwise
@@ -18,8 +18,8 @@ from scipy.optimize import brentq
 from eulerplateau.branches.conformal.by_writhe import (
     CONTROL,
     NARROWEST,
+    Tell,
     films_by_writhe,
-    told,
 )
 from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
@@ -39,7 +39,6 @@ from eulerplateau.exact.conformal import (
 
 _ROUND_HARMONICS = 16
 _FOUND = 1e-13
-
 
 # Neighbours on a branch, and what is looked for between them.
 Neighbours = tuple[BranchPoint, BranchPoint, "_Held"]
@@ -107,7 +106,7 @@ def rod_film(
     twist_ratio: float = 0.0,
     link: float = 0.0,
     rest_curvature: float = 0.0,
-    tell: Callable[[str], None] = lambda where: None,
+    tell: Tell = lambda where: None,
 ) -> RodFilm:
     """Return the film that a start leads to at a load, with a rod turned `link` times.
 
@@ -137,19 +136,15 @@ def rod_film(
     return _measured(curved(found, rest_curvature, tell) if rest_curvature else found)
 
 
-def _straight_rod(
-    start: Start, values: Mapping[str, float], tell: Callable[[str], None]
-) -> BranchPoint:
+def _straight_rod(start: Start, values: Mapping[str, float], tell: Tell) -> BranchPoint:
     """Return the film that a start leads to, with a rod that is straight by nature."""
     load, twist_ratio, link = values["load"], values["twist_ratio"], values["link"]
     if start is Start.DISK:
         return _flat_disk(values)
     if start is Start.LOBES and load <= BUCKLING:
-        problem = (
-            f"found {load:g}; lobes exist above {BUCKLING:.6g}, where the disk buckles"
-        )
-        raise SpecError("load", problem)
-    path = told(films_by_writhe(load), tell)
+        exist = f"lobes exist above {BUCKLING:.6g}, where the disk buckles"
+        raise SpecError("load", f"found {load:g}; {exist}")
+    path = films_by_writhe(load, tell=tell)
     if start is Start.LOBES and link == 0.0:
         return _with_rod(next(iter(path)), values)
     between = _between if start is Start.LOBES else _twisted_between

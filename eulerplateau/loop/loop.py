@@ -24,10 +24,12 @@ class Loop:
     Attributes
     ----------
     terms : what its energy has beside its bending, by names: "twist"
+    diameter : its thickness, in units of L; None of a line, whose strands only meet
     """
 
     rest_lengths: FloatArray
     terms: Mapping[str, OwnTerm] = field(default_factory=dict)
+    diameter: float | None = None
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -111,8 +113,21 @@ class Loop:
         return float(np.abs(lengths / self.rest_lengths - 1).max())
 
     def strands_meet(self, x_loop: FloatArray) -> bool:
-        """Whether two stretches of the loop have come as close as neighbours are."""
+        """Whether two stretches of the loop have come as close as neighbours are.
+
+        Strands with a thickness touch, and do not come closer.
+        """
+        if self.diameter is not None:
+            return False
         return strands_meet(x_loop, float(self.rest_lengths.max()))
+
+    def is_too_thick(self, x_loop: FloatArray) -> bool:
+        """Whether a loop (n, d) bends more than so thick a rod can: kappa > 2 / d."""
+        if self.diameter is None:
+            return False
+        tangent = self.chords(x_loop) / self.rest_lengths[:, None]
+        turns = np.linalg.norm(backward_differences(tangent), axis=1)
+        return bool((turns / self.mean_lengths).max() > 2 / self.diameter)
 
     def bending_force(self, x_loop: FloatArray) -> FloatArray:
         """Return the gradient (n_b, 3) of sum_v <s_v> kappa_v^2, i.e. 2 B x.

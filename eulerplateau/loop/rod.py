@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.loop.loop import Loop
+
+# The largest diameter, in units of the loop's length.
+THICKEST = 0.1
 
 
 @dataclass(frozen=True)
@@ -19,18 +22,21 @@ class Rod:
     twist_ratio : C / B, the rigidities' ratio; None if twist escapes, and costs nothing
     link : the turns it was given
     rest_curvature : q = k0 L / 2 pi, its natural curvature over that of a circle
+    diameter : its thickness, in units of L; None if its strands only meet
     """
 
     twist_ratio: float | None = None
     link: float = 0.0
     rest_curvature: float = 0.0
+    diameter: float | None = None
 
     def loop(self, rest_lengths: FloatArray, in_plane: bool) -> Loop:
         """Return a loop of the rod; raises SpecError for numbers that no rod has.
 
         rest_lengths : (n_b,) float, of its edges; in_plane : whether it is kept in a plane
         """
-        bare = Loop(rest_lengths)
+        self._refuse_wrong_diameter()
+        bare = Loop(rest_lengths, diameter=self.diameter)
         if self.twist_ratio is None:
             self._refuse_without_twist()
             return bare
@@ -43,11 +49,17 @@ class Rod:
             from eulerplateau.loop.curved_rod import CurvedRod
 
             rod = CurvedRod(bare, self.twist_ratio, self.link, self.rest_curvature)
-            return Loop(rest_lengths, {"rod": rod})
+            return replace(bare, terms={"rod": rod})
         from eulerplateau.loop.twist import PlaneTwist, Twist
 
         twist = PlaneTwist if in_plane else Twist
-        return Loop(rest_lengths, {"twist": twist(bare, self.twist_ratio, self.link)})
+        terms = {"twist": twist(bare, self.twist_ratio, self.link)}
+        return replace(bare, terms=terms)
+
+    def _refuse_wrong_diameter(self) -> None:
+        if self.diameter is not None and not 0.0 < self.diameter <= THICKEST:
+            problem = f"found {self.diameter:g}; should be above 0, up to {THICKEST:g}"
+            raise SpecError("diameter", problem)
 
     def _refuse_without_twist(self) -> None:
         if self.link != 0.0:

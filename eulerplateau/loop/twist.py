@@ -221,3 +221,14 @@ def writhe_gained(x: FloatArray, after: FloatArray) -> float:
 def passes(gained: float, locally: float) -> bool:
     """Return whether a strand has passed through another: the writhe gained more."""
     return abs(gained - locally) > _PASSED
+
+
+def passed(x: FloatArray, after: FloatArray) -> bool:
+    """Return whether a strand of a loop (n, 3) has passed through another on a short way.
+
+    Never in a plane (n, 2), where strands that pass can be seen to cross.
+    """
+    if x.shape[1] == 2:
+        return False
+    gained = polygon_writhe(after) - polygon_writhe(x)
+    return passes(gained, writhe_gained(x, after))

@@ -23,9 +23,9 @@ from eulerplateau.solvers.models import Model, Models
 from eulerplateau.solvers.second_variation import NewtonStep, TangentModel
 from eulerplateau.solvers.trust_region import trust_region_step
 
-_FIRST_RADIUS = 0.05
-_SMALLEST_RADIUS = 1e-12
-_LARGEST_RADIUS = 0.5
+FIRST_RADIUS = 0.05
+SMALLEST_RADIUS = 1e-12
+LARGEST_RADIUS = 0.5
 
 # Below this residual the primal-dual iteration is tried, and believed if no loop vertex
 # moves farther than this (in L).
@@ -62,11 +62,11 @@ class Descent:
 
     def run(self, x: FloatArray) -> tuple[State, Status]:
         """Descend from a loop (n, d) that keeps its constraint while the energy holds."""
-        state = State(self.models.at(x), _FIRST_RADIUS, 0)
+        state = State(self.models.at(x), FIRST_RADIUS, 0)
         close = _CLOSE
         while state.iteration < self.max_iterations:
             heed()
-            if _at_rounding(state.model):
+            if at_rounding(state.model):
                 found = self.models.spectrum(state.model)
                 state = replace(state, stability=found)
                 if found.n_unstable == 0:
@@ -96,38 +96,38 @@ class Descent:
         if reached is None:
             return None
         moved = reached - x
-        noise = _noise(self.energy, x, moved, found.tensions)
+        noise = noise_of(self.energy, x, moved, found.tensions)
         if self.energy.change(x, moved) > noise or float(np.abs(moved).max()) > _NEAR:
             return None
         model = self.models.at(reached)
         spectrum = self.models.spectrum(model)
         if spectrum.n_unstable:
             return None
-        return State(model, _FIRST_RADIUS, iteration + found.iterations, spectrum)
+        return State(model, FIRST_RADIUS, iteration + found.iterations, spectrum)
 
     def _advance(self, state: State) -> State | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
         energy, model, radius = self.energy, state.model, state.radius
-        while radius > _SMALLEST_RADIUS:
+        while radius > SMALLEST_RADIUS:
             step = model.newton_step(radius)
             if step is None:
-                step = _bounded_step(energy, model.dense, radius)
+                step = bounded_step(energy, model.dense, radius)
             x = energy.constraint.project(model.x + step.moved)
-            gained = _change(energy, model.x, x)
+            gained = change_of_energy(energy, model.x, x)
             if x is not None and gained is not None:
                 moved = x - model.x
-                noise = _noise(energy, model.x, moved, model.tensions)
+                noise = noise_of(energy, model.x, moved, model.tensions)
                 if gained <= 0.1 * step.promised or (
                     abs(gained) <= noise and -step.promised <= noise
                 ):
                     grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
-                    wider = min(2 * radius, _LARGEST_RADIUS) if grow else radius
+                    wider = min(2 * radius, LARGEST_RADIUS) if grow else radius
                     return State(self.models.at(x, model), wider, state.iteration + 1)
             radius = 0.25 * min(step.size, radius)
         return None
 
 
-def _noise(
+def noise_of(
     energy: LoopEnergy, x: FloatArray, moved: FloatArray, tensions: FloatArray
 ) -> float:
     """Return the change of energy that rounding alone can show for a displacement.
@@ -139,12 +139,14 @@ def _noise(
     return 4 * (energy.rounding * float(np.abs(moved).sum()) + by_lengths)
 
 
-def _at_rounding(model: Model) -> bool:
+def at_rounding(model: Model) -> bool:
     """Whether the forces balance as well as double precision can tell."""
     return model.residual <= max(4 * model.rounding, 1e-13)
 
 
-def _change(energy: LoopEnergy, x: FloatArray, after: FloatArray | None) -> float | None:
+def change_of_energy(
+    energy: LoopEnergy, x: FloatArray, after: FloatArray | None
+) -> float | None:
     """Return the change of energy; None where there is no loop, or no film on it."""
     if after is None:
         return None
@@ -154,7 +156,7 @@ def _change(energy: LoopEnergy, x: FloatArray, after: FloatArray | None) -> floa
         return None
 
 
-def _bounded_step(energy: LoopEnergy, model: TangentModel, radius: float) -> NewtonStep:
+def bounded_step(energy: LoopEnergy, model: TangentModel, radius: float) -> NewtonStep:
     """Return the trust-region step, still along modes whose gain rounding would hide.
 
     A hexagon's saddle turns against its mesh almost for free: following that mode would

@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
+
+if TYPE_CHECKING:
+    from eulerplateau.loop import Contacts
 
 # What an accepted equilibrium meets: force imbalance relative to the largest force, and
 # relative error of every loop edge's length.
@@ -39,6 +43,7 @@ class Status(Enum):
     FOLDED = "folded"
     TOUCHING = "touching"
     COLLAPSED = "collapsed"
+    TOO_THICK = "too_thick"
 
     @property
     def advice(self) -> str:
@@ -56,6 +61,7 @@ _ADVICE = {
     Status.FOLDED: "triangles lie on each other: a mesh without folds, or a coarser one",
     Status.TOUCHING: "the edge meets itself: a smaller load, or softer adhesions",
     Status.COLLAPSED: "two adhesions have met: leave one out, or make them stiffer",
+    Status.TOO_THICK: "the loop bends more than a rod of its diameter can: a thinner one",
     Status.UNRESOLVED: "the loop turns by over 30 degrees at a vertex: use a finer mesh",
 }
 
@@ -125,6 +131,7 @@ class Equilibrium:
         max |l_v / s_v - 1| over the loop's edges.
     stability : Stability or None
         The lowest part of the spectrum; None where the solver does not compute it.
+    contacts : where strands of a loop that has a diameter touch; None without one
     """
 
     shape: Shape
@@ -141,6 +148,7 @@ class Equilibrium:
     status: Status
     stability: Stability | None = None
     loop_energies: Mapping[str, float] = field(default_factory=dict)
+    contacts: Contacts | None = None
 
     @property
     def converged(self) -> bool:

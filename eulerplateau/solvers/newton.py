@@ -57,7 +57,7 @@ def minimise(
         return unusable
     limit = 500 if max_iterations is None else max_iterations
     try:
-        search = _search_for(problem.film)
+        search = _search_for(problem)
         found = search(problem, start, tensions, load, limit, observe)
     except np.linalg.LinAlgError:
         found = None  # a loop that has fallen onto a line has no tensions
@@ -67,9 +67,13 @@ def minimise(
     return problem.classified(replace(found, seconds=time.perf_counter() - started))
 
 
-def _search_for(film: Film) -> Search:
-    """Return the search that suits a film, its modules loaded now."""
-    match film:
+def _search_for(problem: Problem) -> Search:
+    """Return the search that suits a loop and its film, its modules loaded now."""
+    if problem.loop.diameter is not None:
+        from eulerplateau.solvers.contact.search import search
+
+        return search
+    match problem.film:
         case AreaFilm():
             from eulerplateau.solvers.soap import search
         case PlaneFilm():
@@ -87,7 +91,13 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     """
     film = problem.film.of_loop(found.shape)
     energy = film.energy(problem.loop, found.load)
-    models = models_for(problem.film, problem.loop, energy)
+    if found.contacts is None:
+        models = models_for(problem.film, problem.loop, energy)
+    else:
+        from eulerplateau.loop import with_gaps_held
+
+        places = found.contacts.places
+        models = DenseModels(with_gaps_held(energy, problem.loop, places))
     x_loop = film.project(found.shape.x_loop)
     model = models.at(x_loop).dense
     modes = {}

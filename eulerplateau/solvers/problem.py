@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.errors import SpecError
-from eulerplateau.film import Film, make_film
+from eulerplateau.errors import MeshError, SpecError
+from eulerplateau.film import Film, FilmOfLoop, make_film
 from eulerplateau.loop import Loop, Rod, kernels, largest_turning, remove_sliding
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers.equilibrium import (
@@ -54,12 +54,14 @@ class Problem:
         twist_ratio: float | None = None,
         link: float = 0.0,
         rest_curvature: float = 0.0,
+        diameter: float | None = None,
     ) -> None:
         """Span a disk by a film: "springs", "dirichlet", "area", or a film of one's own.
 
         `in_plane` keeps a film of true area in the plane of its disk. With `twist_ratio`,
         the rigidities' C / B, the loop resists twist: it was turned `link` times and then
         welded; by nature it is `rest_curvature` times as curved as a circle of its length.
+        With a `diameter`, in units of L, its strands touch and pass through nothing.
         Raises SpecError for an unknown film or a wrong number, MeshError for a disk that
         cannot carry it.
         """
@@ -69,7 +71,7 @@ class Problem:
         made = make_film(disk, film, in_plane=in_plane) if isinstance(film, str) else film
         object.__setattr__(self, "disk", disk)
         object.__setattr__(self, "film", made)
-        rod = Rod(twist_ratio, link, rest_curvature)
+        rod = Rod(twist_ratio, link, rest_curvature, diameter)
         object.__setattr__(self, "loop", rod.loop(disk.rest_lengths, in_plane))
 
     def __repr__(self) -> str:
@@ -111,6 +113,16 @@ class Problem:
             )
         return self.disk.shape.moved(positions)
 
+    def tied_film(self) -> FilmOfLoop | None:
+        """Return the film of least Dirichlet energy, tied to the mesh as it was given.
+
+        It can be spanned across any loop, however crumpled. None if the mesh is no good.
+        """
+        try:
+            return make_film(self.disk, "dirichlet").of_loop(self.disk.shape)
+        except (MeshError, LinAlgError):
+            return None
+
     def bending_energy(self, shape: Shape) -> tuple[float, FloatArray]:
         """Return the loop's bending energy and its gradient (n_v, 3)."""
         gradient = np.zeros_like(shape.x)
@@ -121,12 +133,8 @@ class Problem:
 
     def loop_forces(self, shape: Shape) -> list[FloatArray]:
         """Return the gradient (n_v, 3) of what the loop's energy has beside its bending."""
-        forces = []
-        for term in self.loop.terms.values():
-            force = np.zeros_like(shape.x)
-            force[shape.loop] = term.force(shape.x_loop)
-            forces.append(force)
-        return forces
+        terms = self.loop.terms.values()
+        return [self.on_loop(shape, term.force(shape.x_loop)) for term in terms]
 
     def said_of_loop(self, shape: Shape) -> tuple[dict[str, float], dict[str, FloatArray]]:
         """Return what that says in tables and, as fields (n_v, 3), in shapes.
@@ -142,14 +150,26 @@ class Problem:
                 fields[name][shape.loop] = on_loop
         return columns, fields
 
+    def on_loop(self, shape: Shape, forces: FloatArray) -> FloatArray:
+        """Return forces (n_v, 3) that are those on the loop (n_b, 3), and else 0."""
+        whole = np.zeros_like(shape.x)
+        whole[shape.loop] = forces
+        return whole
+
     def tension_force(self, shape: Shape, tensions: FloatArray) -> FloatArray:
         """Return J^T lambda (n_v, 3) for the tensions lambda (n_b,) of the loop's edges."""
-        force = np.zeros_like(shape.x)
-        force[shape.loop] = self.loop.tension_force(shape.x_loop, tensions)
-        return force
+        return self.on_loop(shape, self.loop.tension_force(shape.x_loop, tensions))
 
-    def residual(self, shape: Shape, tensions: FloatArray, load: float) -> float:
+    def residual(
+        self,
+        shape: Shape,
+        tensions: FloatArray,
+        load: float,
+        pushes: FloatArray | None = None,
+    ) -> float:
         """Return the imbalance of forces over the largest force, both as max norms.
+
+        pushes : (n_b, 3) float, the gradient that contacts add, if there are any.
 
         Infinite where a soap film is so degenerate that there is no film or no loop.
         """
@@ -158,6 +178,8 @@ class Problem:
         try:
             film = load * self.film.forces(shape)
             parts = [bending, film, tension, *self.loop_forces(shape)]
+            if pushes is not None:
+                parts.append(self.on_loop(shape, pushes))
             total = self.without_sliding(shape, sum(parts[1:], start=parts[0]))
         except LinAlgError:
             return np.inf
@@ -254,6 +276,8 @@ class Problem:
         loop = found.status is not Status.NOT_FINITE and found.length_error < _CLOSED
         if loop and self.pinched(found.shape):
             return replace(found, status=Status.PINCHED)
+        if loop and self.loop.is_too_thick(found.shape.x_loop):
+            return replace(found, status=Status.TOO_THICK)
         if not found.converged:
             return found
         turning = largest_turning(found.shape.x_loop)

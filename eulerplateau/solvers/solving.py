@@ -79,6 +79,7 @@ def solve(
     if tensions is not None:
         known = _tensions(problem, tensions)
     minimise = _named(solver)
+    _check_knows_contact(problem, solver)
     show = (lambda x_loop: None) if observe is None else observe
     with one_thread():
         return minimise(problem, _load(load), shape, known, _limit(max_iterations), show)
@@ -138,6 +139,7 @@ def follow_steps(
     shape, known = _start(problem, start)
     if tensions is not None:
         known = _tensions(problem, tensions)
+    _check_knows_contact(problem, solver)
     return _swept(steps, shape, known, _named(solver), _limit(max_iterations))
 
 
@@ -171,6 +173,12 @@ def _swept(
         yield found
         if np.isfinite(found.shape.x).all():
             shape, tensions = found.shape, found.tensions
+
+
+def _check_knows_contact(problem: Problem, solver: str) -> None:
+    if problem.loop.diameter is not None and solver != "newton":
+        found = f"found {solver!r}, which knows no contact; a loop with a diameter"
+        raise SpecError("solver", f"{found} takes 'newton'")
 
 
 def _named(solver: str) -> Minimise:

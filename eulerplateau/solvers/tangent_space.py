@@ -49,7 +49,7 @@ def directional(energy: LoopEnergy, x: FloatArray) -> Directional:
     """Return the second variation at loop positions x (n, d) that keep the constraint."""
     free = energy.free_motions(x)
     turns = energy.constraint.turns(x)
-    if turns is None:
+    if turns is None or turns.others is not None:
         along = _balanced_by_columns(energy, x, free)
     else:
         motions = orthonormal(energy, free)

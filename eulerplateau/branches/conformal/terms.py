@@ -284,6 +284,8 @@ class WholeLength:
         """Return None: there are no edges."""
         return None
 
-    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+    def split_stiffness(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray | None, FloatArray]:
         """Return nothing: there are no edges."""
-        return np.zeros(0)
+        return None, np.zeros(0)

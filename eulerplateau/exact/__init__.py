@@ -7,6 +7,7 @@
     conformal/      `relax`: films in space, downhill from a start; their branches and
                     their stability (docs/true-film.md)
     cell/           round cells on a continuous adhesion, and their fit (docs/cells.md)
+    bench.py        a loop of a real line, in SI units: its load, and where it changes
     checks.py       what is asked of their arguments
 
 Of films, lengths are in units of L, energies in alpha/L; a tension is sigma_hat =

@@ -154,6 +154,7 @@ def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
         "ensemble",
         "collect",
         "doctor",
+        "estimate",
     }
     assert {line[1] for line in lines} == set(commands.commands) - elsewhere
     for line in lines:

@@ -47,6 +47,8 @@ class Measure:
 
     def factor(self, unit: str) -> float:
         """Return a unit in the SI's; ValueError where it is one of something else."""
+        if unit == self.unit:
+            return 1.0
         try:
             if not _UNIT.fullmatch(unit):
                 raise ValueError(unit)

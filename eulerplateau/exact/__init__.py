@@ -7,7 +7,8 @@
     conformal/      `relax`: films in space, downhill from a start; their branches and
                     their stability (docs/true-film.md)
     cell/           round cells on a continuous adhesion, and their fit (docs/cells.md)
-    bench.py        a loop of a real line, in SI units: its load, and where it changes
+    bench.py        a loop of a real line, in SI units: its load; bench_changes.py: where
+                    it changes
     checks.py       what is asked of their arguments
 
 Of films, lengths are in units of L, energies in alpha/L; a tension is sigma_hat =

@@ -1,10 +1,5 @@
-from .bench import (
-    Bench as Bench,
-    Twist as Twist,
-    bending_rigidity as bending_rigidity,
-    changes as changes,
-    state as state,
-)
+from .bench import Bench as Bench, bending_rigidity as bending_rigidity
+from .bench_changes import Twist as Twist, changes as changes, state as state
 from .checks import finite as finite
 from .conformal.equilibrium import ConformalFilm as ConformalFilm
 from .conformal.relaxation import relax as relax

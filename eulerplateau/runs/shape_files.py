@@ -104,7 +104,7 @@ def write_shape(
     on from here. `curvatures` are those of the shape, found here if they are not known.
     Raises OutputError if the file cannot be written.
     """
-    names = dict.fromkeys((*_OF_ITS_ROW, row.quantity))
+    names = dict.fromkeys((*_OF_ITS_ROW, row.load_name.column))
     about = {name: np.array([getattr(row, name)]) for name in names}
     digest = bytes.fromhex(mesh.digest if rest_mesh is None else rest_mesh)
     write_vtp(

@@ -3,6 +3,11 @@ from .bench_changes import Twist as Twist, changes as changes, state as state
 from .checks import finite as finite
 from .conformal.equilibrium import ConformalFilm as ConformalFilm
 from .conformal.relaxation import relax as relax
+from .outline.fit import (
+    OutlineFit as OutlineFit,
+    fit_outline as fit_outline,
+    fit_racket as fit_racket,
+)
 from .planar.film import (
     PlanarFilm as PlanarFilm,
     planar_film as planar_film,

@@ -13,7 +13,8 @@ from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import MeshSpec
 from eulerplateau.runs.bench_load import BenchLoad, bench_load
-from eulerplateau.runs.bench_spec import RodSettings, SurfaceTension
+from eulerplateau.runs.bench_spec import RodSettings
+from eulerplateau.runs.film_spec import FilmSettings
 from eulerplateau.runs.loads import Loads
 from eulerplateau.runs.loop_spec import LoopSettings
 from eulerplateau.runs.parameters import BENCH, NEEDED, own_parameter
@@ -26,26 +27,6 @@ class StoredMesh(Settings):
     """A mesh file, or a mesh specification in a file; relative to the run's file."""
 
     file: str
-
-
-class FilmSettings(Settings):
-    """Which film spans the loop: springs, Dirichlet's energy, or the true area.
-
-    Attributes
-    ----------
-    plane : bool
-        Keeps a film of the true area in its plane, where its loop is all it needs.
-    load : float, k L^3 / alpha of springs and sigma_hat of other films
-        Where another parameter than the load is varied: that at which it is.
-    surface_tension : float in N/m, or "25 mN/m"
-        Of the liquid: gamma, of which the film's tension is twice. With [rod] and
-        loop.length it sets the load.
-    """
-
-    model: Literal["springs", "dirichlet", "area"] = "springs"
-    plane: bool = False
-    load: float | None = Field(default=None, ge=0)
-    surface_tension: SurfaceTension | None = None
 
 
 class StartSettings(Settings):
@@ -208,7 +189,7 @@ class RunSpec(Settings):
     @property
     def bench(self) -> BenchLoad | None:
         """What sets the load in units; None where the run says the load itself."""
-        return bench_load(self)
+        return bench_load(self.rod, self.loop, self.film, self.sweep, self.explored)
 
     @property
     def held(self) -> float | None:

@@ -155,6 +155,7 @@ def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
         "collect",
         "doctor",
         "estimate",
+        "fit",
     }
     assert {line[1] for line in lines} == set(commands.commands) - elsewhere
     for line in lines:

@@ -92,6 +92,7 @@ def fit_outline(
     SpecError
         If an argument is wrong, or the points are too few.
     """
+    _check_level(level)
     measured, unit = _measured(points)
     measured = counter_clockwise(measured)
     offset = _offset(diameter, unit)
@@ -113,6 +114,7 @@ def fit_racket(
 
     Arguments are those of `fit_outline`, and so is what is raised.
     """
+    _check_level(level)
     measured, unit = _measured(points)
     x, y = (measured - (measured[0] + measured[-1]) / 2).T
     if float(x[:-1] @ y[1:] - y[:-1] @ x[1:]) < 0:
@@ -124,6 +126,11 @@ def fit_racket(
     # sigma / alpha = 2 sigma / EI.
     strength = Estimate(*(2 * side**-3 for side in (size.value, size.high, size.low)))
     return OutlineFit(None, None, size, strength, *_rest(found, unit, level))
+
+
+def _check_level(level: float) -> None:
+    if not 0 < level < 1:
+        raise SpecError("level", f"found {level:g}; should lie between 0 and 1")
 
 
 def _measured(given: ArrayLike) -> tuple[FloatArray, float]:

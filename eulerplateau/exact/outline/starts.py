@@ -17,8 +17,8 @@ from eulerplateau.exact.planar import LOBES
 # Loads over that of buckling at which films are held beside an outline.
 _LOADS = (1.02, 1.15, 1.4, 1.75, 2.5, 3.5, 7.0, 20.0)
 _NODES = 256
-# Starts are tried whose misfit is at most this times the least.
-_WORSE = 3.0
+# Starts are tried whose misfit is at most this times the least, and so many.
+_WORSE, _TRIED = 3.0, 3
 # Points of an outline that is rid of its noise: means of its points.
 _SMOOTH = 64
 
@@ -133,7 +133,7 @@ def starts(points: FloatArray, offset: float, lobes: int | None) -> Iterator[Sta
     found = lobed_starts(points, offset, numbers)
     rounds = sorted((round_start(n, points, offset) for n in numbers), key=_misfit)
     least = min(found[0].misfit, rounds[0].misfit)
-    yield from (s for s in (*rounds[:1], *found) if s.misfit <= _WORSE * least)
+    yield from (s for s in (*rounds[:1], *found[:_TRIED]) if s.misfit <= _WORSE * least)
 
 
 def round_start(n: int, points: FloatArray, offset: float) -> Start[Lobes]:

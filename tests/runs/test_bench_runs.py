@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import pickle
 import shutil
 from math import pi
 from pathlib import Path
@@ -22,9 +23,13 @@ from eulerplateau.runs import read_run, read_runs, run_branches, run_sweep
 from eulerplateau.runs.ensembles import joined, load_ensemble
 from eulerplateau.runs.ensembles.cases import carry_out
 from eulerplateau.runs.ensembles.folder import case_folder, case_places
+from eulerplateau.runs.bench_spec import RodSettings
+from eulerplateau.runs.film_spec import FilmSettings
+from eulerplateau.runs.loop_spec import LoopSettings
 from eulerplateau.runs.rows import COLUMNS
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import make_problem
+from eulerplateau.runs.sweep_spec import SweepSettings
 from eulerplateau.settings import validate
 from tests.helpers import shapes
 from tests.helpers.command import run_here
@@ -79,6 +84,18 @@ def test_a_length_and_a_liquid_set_the_load(model: str, per_load: float) -> None
     assert alike.loads() == pytest.approx(
         spec(Path("x.vtp"), film=film, sweep=LENGTHS).loads()
     )
+
+
+def test_a_run_made_in_python_says_what_it_was_given() -> None:
+    made = RunSpec(
+        mesh={"file": "x.vtp"},
+        rod=RodSettings(**NYLON),
+        film=FilmSettings(**SOAP),
+        loop=LoopSettings(link=0.1, twist_ratio=0.7),
+        sweep=SweepSettings(parameter="length", values=["20 cm"]),
+    )
+    assert made.loads() == pytest.approx([5093 / (2 * 3**0.5)], rel=1e-4)
+    assert pickle.loads(pickle.dumps(made)) == made
 
 
 def test_units_make_no_other_run(mesh: Path, swept: Path, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -18,6 +19,7 @@ _STATES = {
     "buckled": "flat, with two lobes",
     "point-contact": "flat, with two lobes whose sides touch in a point",
     "line-contact": "flat, with two lobes whose sides touch along a line",
+    "too_thick": "bent more sharply than a line of this diameter can be",
     "eight": "a pinched figure eight, to which two lobes have jumped",
 }
 _LINES = {
@@ -57,7 +59,7 @@ def estimate(
     """Say what a loop of a line does in a soap film, and at which lengths that changes.
 
     The line's bending rigidity is EI, of --young and --diameter (I = pi d^4/64) or given
-    as --bending-rigidity. Thresholds are those of a line much thinner than the loop.
+    as --bending-rigidity. A given diameter is heeded where the loop's sides touch.
     """
     from eulerplateau.errors import SpecError
     from eulerplateau.exact import Bench
@@ -74,8 +76,12 @@ def estimate(
     if poisson is not None and not -1 < poisson <= 0.5:
         raise SpecError("--poisson", f"found {poisson:g}; should be as 0.4, up to 0.5")
     bench = Bench(stiffness, long.value, liquid)
-    with one_thread():
-        numbers = _numbers(bench, thick, poisson)
+    try:
+        with one_thread():
+            numbers = _numbers(bench, thick, poisson)
+    except SpecError as error:
+        problem = f"{error.args[-1]}, in units of the loop's length"
+        raise SpecError("--diameter", problem) from None
     click.echo(
         json.dumps(numbers, indent=2) if as_json else "\n".join(_said(numbers, long))
     )
@@ -88,18 +94,20 @@ def _numbers(bench: Any, diameter: float | None, poisson: float | None) -> dict[
     from eulerplateau.exact import Twist, changes, state
     from eulerplateau.film import SPRING_LOAD
 
-    loads = asdict(changes())
+    relative = None if diameter is None else diameter / bench.length
+    loads = asdict(changes(0.0 if diameter is None else bench.width(diameter)))
+    loads = {name: load if isfinite(load) else None for name, load in loads.items()}
     return {
         "sigma_hat": bench.load,
         "kL3_alpha": bench.load / SPRING_LOAD.tension_per_load,
-        "diameter": None if diameter is None else diameter / bench.length,
+        "diameter": relative,
         "elastocapillary_length": bench.elastocapillary_length,
         "bending_rigidity": bench.rigidity,
         "twist_ratio": None if poisson is None else 1 / (1 + poisson),
-        "film": {twist.value: state(bench.load, twist) for twist in Twist},
+        "film": {twist.value: state(bench.load, twist, relative) for twist in Twist},
         "loads": loads,
         "lengths": {
-            **{name: bench.length_at(load) for name, load in loads.items()},
+            **{name: load and bench.length_at(load) for name, load in loads.items()},
             "opens": None,
         },
     }
@@ -133,6 +141,9 @@ def _said(numbers: Mapping[str, Any], length: Quantity) -> Iterator[str]:
     yield "Lengths of a loop of this line at which"
     for name, what in _CHANGES.items():
         load = numbers["loads"][name]
+        if load is None:
+            yield f"  {'':>10}  {what}: not where the line's curvature stays below 2/d"
+            continue
         yield f"  {long(numbers['lengths'][name]):>10}  {what} (sigma_hat {load:.2f})"
     yield f"  {'':>10}  a pinched eight opens again: {_OPENS}"
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eulerplateau.cli.bench_options import line_options, quantity, rigidity
+from eulerplateau.cli.options import writes_to
 
 if TYPE_CHECKING:
     from eulerplateau.exact import OutlineFit
@@ -39,12 +40,7 @@ _OPTIONS = {"lobes": "--lobes", "level": "--level"}
     "--level", type=float, default=0.95, show_default=True, help="Of the intervals."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, in full precision.")
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Also draw the outline and the fit: .png, .pdf or .svg.",
-)
+@writes_to("Also draw the outline and the fit: .png, .pdf or .svg.")
 def fit(
     outline: Path,
     lobes: int | None,

@@ -67,6 +67,10 @@ class Bench:
         """Return the length (m) at which a loop of this line has a load."""
         return self.elastocapillary_length * cbrt(load / 2)
 
+    def width(self, diameter: float) -> float:
+        """Return a diameter (m) in units of (alpha / sigma)^(1/3)."""
+        return cbrt(2) * diameter / self.elastocapillary_length
+
     def surface_tension_at(self, load: float) -> float:
         """Return the surface tension (N/m) at which this loop has a load."""
         return self.rigidity / self.length * load / 4 / self.length / self.length

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from enum import Enum
 
 from eulerplateau.exact.conformal import lobes_twist
-from eulerplateau.exact.planar import planar_film, thresholds
+from eulerplateau.exact.planar import TooThickError, planar_film
+from eulerplateau.exact.planar.buckled import sigma_buckling
+from eulerplateau.exact.planar.limits import contacts
 
 
 class Twist(Enum):
@@ -18,7 +20,7 @@ class Twist(Enum):
 
 @dataclass(frozen=True)
 class Changes:
-    """Loads sigma_hat at which a loop that was welded straight, of thin line, changes.
+    """Loads sigma_hat at which a loop of a line changes; infinite where it is too thick.
 
     Attributes
     ----------
@@ -33,24 +35,28 @@ class Changes:
     touches_along_a_line: float
 
 
-def changes() -> Changes:
-    """Return the loads at which a loop changes, to ten digits."""
-    flat = thresholds(2)
-    return Changes(
-        flat.sigma_buckling, lobes_twist(), flat.sigma_contact, flat.sigma_line_contact
-    )
+def changes(width: float = 0.0) -> Changes:
+    """Return the loads at which loops of a line change, to ten digits.
+
+    `width` is the line's diameter in units of (alpha / sigma)^(1/3), of any length.
+    """
+    return Changes(sigma_buckling(2), lobes_twist(), *contacts(2, width))
 
 
-EIGHT = "eight"
+EIGHT, TOO_THICK = "eight", "too_thick"
 
 
-def state(load: float, twist: Twist) -> str:
+def state(load: float, twist: Twist, diameter: float | None = None) -> str:
     """Return what a film of two lobes has come to when its load has risen to this.
 
-    A regime of planar films, or "eight", the pinched figure eight. A line that is welded
+    A regime of planar films; "eight", the pinched figure eight; or "too_thick". A line that is welded
     straight and isotropic, its C/B being 2/3 or more, leaves the plane at no load
-    (docs/welded-loop.md).
+    (docs/welded-loop.md). `diameter` is the line's, in units of the length. Raises
+    SpecError for one that is more than a tenth of it.
     """
     if twist is Twist.FREE and load > lobes_twist():
         return EIGHT
-    return str(planar_film(2, load).regime.value)
+    try:
+        return str(planar_film(2, load, diameter).regime.value)
+    except TooThickError:
+        return TOO_THICK

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from eulerplateau.errors import SpecError
-from eulerplateau.settings import Model, read_toml, validate
+from eulerplateau.settings import Model, Settings, read_toml, validate
 
 # Keys that name a file.
 FILE_KEYS = "mesh.file", "start.file", "cell.points"
@@ -45,6 +45,12 @@ def at_home(key: str, file: str) -> Path:
         return Path(file).expanduser()
     except RuntimeError:
         raise SpecError(key, f"found {file!r}; whose home directory is not known") from None
+
+
+def described(spec: Settings) -> dict[str, Any]:
+    """Return a specification as run.json has it: files are found from wherever one is."""
+    data: dict[str, Any] = spec.model_dump(mode="json")
+    return located(data, Path.cwd())
 
 
 def override(data: dict[str, Any], key: str, value: Any) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from eulerplateau.exact import Bench
+from eulerplateau.exact import Bench, thresholds
 from tests.helpers.command import run_here
 
 NYLON = {
@@ -73,6 +73,22 @@ def test_at_the_lengths_it_names_the_film_changes() -> None:
             assert film == expected, (name, share)
 
 
+def test_sides_touch_a_diameter_apart() -> None:
+    numbers = estimated(diameter="2 mm", young="200 kPa")
+    for name, threshold in (
+        ("touches", "sigma_contact"),
+        ("touches_along_a_line", "sigma_line_contact"),
+    ):
+        relative = 2e-3 / numbers["lengths"][name]
+        own = getattr(thresholds(2, relative), threshold)
+        assert numbers["loads"][name] == pytest.approx(own, rel=1e-9)
+        assert own < getattr(thresholds(2), threshold)
+    thick = estimated(diameter="20 mm", young="30 Pa")
+    assert thick["lengths"]["touches"] is None
+    assert thick["film"]["welded"] == "too_thick"
+    assert thick["loads"]["buckles"] == numbers["loads"]["buckles"]
+
+
 def test_what_is_printed_speaks_the_unit_of_the_length() -> None:
     said = run_here("estimate", *options(NYLON), "--poisson", 0.4).stdout
     assert "5093.0" in said
@@ -92,6 +108,7 @@ def test_what_is_printed_speaks_the_unit_of_the_length() -> None:
         ({"poisson": "0.6"}, "--poisson", "0.4"),
         ({"bending-rigidity": "1 N m^2"}, "--young", "--bending-rigidity"),
         ({"length": "1e200 m"}, "sigma_hat", "units"),
+        ({"diameter": "30 mm"}, "--diameter", "at most 0.1"),
         ({"diameter": "1e-200 m"}, "sigma_hat", "units"),
     ],
 )

@@ -20,10 +20,10 @@ from eulerplateau.pictures import draw_branches, draw_comparison, draw_diagram
 from eulerplateau.pictures.gallery.collection import collect
 from eulerplateau.pictures.gallery.document import page
 from eulerplateau.runs import read_run, read_runs, run_branches, run_sweep
+from eulerplateau.runs.bench_spec import RodSettings
 from eulerplateau.runs.ensembles import joined, load_ensemble
 from eulerplateau.runs.ensembles.cases import carry_out
 from eulerplateau.runs.ensembles.folder import case_folder, case_places
-from eulerplateau.runs.bench_spec import RodSettings
 from eulerplateau.runs.film_spec import FilmSettings
 from eulerplateau.runs.loop_spec import LoopSettings
 from eulerplateau.runs.rows import COLUMNS

@@ -49,10 +49,10 @@ EIGHT, TOO_THICK = "eight", "too_thick"
 def state(load: float, twist: Twist, diameter: float | None = None) -> str:
     """Return what a film of two lobes has come to when its load has risen to this.
 
-    A regime of planar films; "eight", the pinched figure eight; or "too_thick". A line that is welded
-    straight and isotropic, its C/B being 2/3 or more, leaves the plane at no load
-    (docs/welded-loop.md). `diameter` is the line's, in units of the length. Raises
-    SpecError for one that is more than a tenth of it.
+    A regime of planar films; "eight", the pinched figure eight; or "too_thick". A line that
+    is welded straight and isotropic, its C/B being 2/3 or more, stays in its plane at least
+    until it touches (docs/welded-loop.md). `diameter` is the line's, in units of the
+    length. Raises SpecError for one that is more than a tenth of it.
     """
     if twist is Twist.FREE and load > lobes_twist():
         return EIGHT

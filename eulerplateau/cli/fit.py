@@ -14,8 +14,7 @@ from eulerplateau.cli.bench_options import line_options, quantity, rigidity
 from eulerplateau.cli.options import writes_to
 
 if TYPE_CHECKING:
-    from eulerplateau.exact import OutlineFit
-    from eulerplateau.exact.estimates import Estimate
+    from eulerplateau.exact import Estimate, OutlineFit
 
 _FORMATS = (".png", ".pdf", ".svg")
 _SURFACE_TENSION = "mN/m"

@@ -3,6 +3,7 @@ from .bench_changes import Twist as Twist, changes as changes, state as state
 from .checks import finite as finite
 from .conformal.equilibrium import ConformalFilm as ConformalFilm
 from .conformal.relaxation import relax as relax
+from .estimates import Estimate as Estimate
 from .outline.fit import (
     OutlineFit as OutlineFit,
     fit_outline as fit_outline,

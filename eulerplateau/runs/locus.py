@@ -57,6 +57,7 @@ def run_locus(
     points = locus_of_film(problem, known, load, varied, windows)
     path.mkdir(parents=True, exist_ok=True)
     rows: list[dict[str, Any]] = []
+    breaks: tuple[str, ...] = ()
     working_on(lambda: f"{path}: {len(rows)} points")
     if (path / LOCUS).exists() and not overwrite:
         raise ConflictError(path, ["points"])
@@ -65,12 +66,13 @@ def run_locus(
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         for point in points:
+            breaks = point.course.breaks
             rows.append(_row(point, columns))
             writer.writerow(rows[-1])
             file.flush()
             on_row(rows[-1])
             heed()
-    return Locus(path, names, tuple(rows), time.perf_counter() - started)
+    return Locus(path, names, tuple(rows), time.perf_counter() - started, breaks)
 
 
 def _start(spec: RunSpec, asked: Asked) -> tuple[Problem, Known, float]:

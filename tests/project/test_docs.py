@@ -121,6 +121,26 @@ def test_commands_of_the_tutorial_on_cells_do_what_it_says(clone: Path) -> None:
         assert (clone / written).stat().st_size > 0, written
 
 
+def test_commands_of_the_page_at_the_bench_print_what_it_says(
+    clone: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = DOCS / "bench.md"
+    for block in blocks(page, "csv") + blocks(page, "toml"):
+        (clone / named(block)).write_text(block)
+    pattern = r"^```sh\n(.*?)^```$(?:\n\n```text\n(.*?)^```$)?"
+    found = re.findall(pattern, page.read_text(), re.M | re.S)
+    assert len(found) == 3
+    for line, said in found:
+        done = run_here(*shlex.split(line)[1:])
+        assert done.returncode == 0
+        if said:
+            words, numbers = words_and_numbers(said)
+            printed = words_and_numbers(done.stdout)
+            assert printed == (words, pytest.approx(numbers, 1e-3))
+    for written in ("runs/nylon/diagram.png", "fit.png"):
+        assert (clone / written).stat().st_size > 0
+
+
 def test_specifications_of_the_tutorial_are_valid(clone: Path) -> None:
     specifications = [clone / named(block) for block in blocks(TUTORIAL, "toml")]
     assert {path.parent.name for path in specifications} == {"meshes", "runs"}
@@ -142,6 +162,8 @@ def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
         "ensemble",
         "collect",
         "doctor",
+        "estimate",
+        "fit",
     }
     assert {line[1] for line in lines} == set(commands.commands) - elsewhere
     for line in lines:

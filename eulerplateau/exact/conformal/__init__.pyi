@@ -56,6 +56,7 @@ from .jets import Jet as Jet, dot as dot, variables as variables
 from .lobes import (
     BUCKLING as BUCKLING,
     first_lobes as first_lobes,
+    lobes_twist as lobes_twist,
     two_lobes as two_lobes,
 )
 from .relaxation import relax as relax

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import PlanarFilm, planar_film, thresholds
-from eulerplateau.loop import Gaps, HeldGaps, strands_of
+from eulerplateau.loop import Gaps, with_gaps_held
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import (
     Equilibrium,
@@ -96,10 +95,10 @@ def held_along_lines(edges: int) -> tuple[TangentModel, float]:
     s, t = ((tips + side * flank).ravel() % 1 for side in (1, -1))
     gaps = Gaps(s, t, np.zeros(len(s), dtype=bool))
     energy = loop_energy(problem, load)
-    held = HeldGaps(energy.constraint, strands_of(problem.loop), gaps)
-    start = held.project(placed(film, mesh)[mesh.loop, :2])
+    held = with_gaps_held(energy, problem.loop, gaps)
+    start = held.constraint.project(placed(film, mesh)[mesh.loop, :2])
     assert start is not None
-    model = critical_point(replace(energy, constraint=held), start)
+    model = critical_point(held, start)
     return model, energy.change(np.zeros_like(start), model.x)
 
 

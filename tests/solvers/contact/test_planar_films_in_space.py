@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
-from eulerplateau.loop import Gaps, HeldGaps, strands_of
+from eulerplateau.loop import Gaps, with_gaps_held
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import Equilibrium, Problem, solve, stability, tangent_model
 from tests.helpers import shapes
@@ -58,11 +57,11 @@ def test_a_rod_that_does_not_resist_twist_leaves_the_plane() -> None:
     """The flat film balances as well, and is a saddle: its two lobes turn."""
     saddle, problem = flat(POINT), in_space(None)
     assert saddle.contacts is not None
-    contacts, strands = saddle.contacts, strands_of(problem.loop)
+    contacts = saddle.contacts
     gaps = Gaps(contacts.s, contacts.t, contacts.at_a_point)
     energy = loop_energy(problem, POINT, saddle.shape)
-    held = HeldGaps(energy.constraint, strands, gaps)
-    model = tangent_model(replace(energy, constraint=held), saddle.shape.x_loop)
+    held = with_gaps_held(energy, problem.loop, gaps)
+    model = tangent_model(held, saddle.shape.x_loop)
     assert model.residual < 1e-9
     assert -model.tensions[disk().n_b :].sum() == pytest.approx(force(saddle), rel=1e-9)
     assert stability(model).n_unstable == 1

@@ -92,14 +92,19 @@ def evenly(knots: FloatArray, gaps: Gaps, forces: FloatArray) -> Gaps | None:
 
 
 def _even(at: FloatArray, push: FloatArray) -> FloatArray | None:
-    """Return where a stretch is held, in edges; None if that is where it is."""
+    """Return where a stretch is held, in edges; None if that is where it is.
+
+    Outward from its ends; places missing from it were let go.
+    """
     if len(at) == 1 or not push.any():
         return None
     middle = float(push @ at / push.sum())
-    first, last = np.round(at[[0, -1]] - middle)
+    off = at - middle
+    if float(np.abs(off - np.round(off)).max()) <= _EVEN:
+        return None
+    first, last = np.floor(off[0] + _EVEN), np.ceil(off[-1] - _EVEN)
     even: FloatArray = middle + np.arange(first, last + 1)
-    same = len(even) == len(at) and float(np.abs(even - at).max()) <= _EVEN
-    return None if same else even
+    return even
 
 
 def _origin(places: FloatArray, whole: float) -> float:

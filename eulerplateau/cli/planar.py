@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from eulerplateau.cli.options import writes_to
+
 _JSON = click.option(
     "--json", "as_json", is_flag=True, help="Print JSON, in full precision."
 )
@@ -67,11 +69,9 @@ def shape(lobes: int, sigma_hat: float, as_json: bool) -> None:
 
 
 @planar.command()
-@click.option(
-    "--out",
+@writes_to(
+    "The folder to write planar-gallery.png and planar-energy.png to.",
     required=True,
-    type=click.Path(path_type=Path),
-    help="The folder to write planar-gallery.png and planar-energy.png to.",
 )
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")
 def figures(out: Path, quiet: bool) -> None:

@@ -37,7 +37,7 @@ from .strands import (
     Strands as Strands,
     strands_of as strands_of,
 )
-from .term import LEAST as LEAST, OwnTerm as OwnTerm, Term as Term
+from .term import LEAST as LEAST, MOST as MOST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,
     LengthMetric as LengthMetric,

@@ -87,9 +87,10 @@ def run_branches(
     the window.
     """
     started = time.perf_counter()
-    disk = make_mesh(spec)
     if spec.film.plane:
         raise SpecError("film.plane", "should be false: branches leave the plane")
+    spec.loop.refuse_thickness("branches")
+    disk = make_mesh(spec)
     problem = make_problem(spec, disk)
     window, varied, held = spec.window(), spec.explored, spec.film.load
     row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature, varied).branch_row

@@ -10,17 +10,17 @@ from eulerplateau.film import FILM_LOADS, SPRING_LOAD
 from eulerplateau.runs.parameters import LOOP_PARAMETERS
 from eulerplateau.runs.rows import (
     BranchRow,
-    CurvedRatioBranchRow,
-    CurvedRatioRow,
     CurvedRodBranchRow,
     CurvedRodRow,
     LoadName,
-    RatioBranchRow,
-    RatioRow,
+    OfContact,
+    OfDiameter,
+    OfRatio,
     Row,
     TwistBranchRow,
     TwistRow,
     columns,
+    with_own,
 )
 from eulerplateau.runs.states import FILM_STATES, States
 
@@ -75,15 +75,13 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
 FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes, FILM_STATES)
 WITH_TWIST = replace(FILM, row=TwistRow, branch_row=TwistBranchRow)
 CURVED = replace(FILM, row=CurvedRodRow, branch_row=CurvedRodBranchRow)
-# Rows with a column for what is varied, where a loop's rows have none.
-_RATIO_ROWS = {
-    TwistRow: (RatioRow, RatioBranchRow),
-    CurvedRodRow: (CurvedRatioRow, CurvedRatioBranchRow),
-}
-_ROWS_OF = {"twist_ratio": _RATIO_ROWS}
+# Columns for what is varied, where a loop's rows have none.
+_OWN: dict[str, Any] = {"twist_ratio": OfRatio, "diameter": OfDiameter}
 
 
-def film_kind(twist_ratio: Any, rest_curvature: Any, varied: Any = "load") -> Kind:
+def film_kind(
+    twist_ratio: Any, rest_curvature: Any, varied: Any = "load", diameter: Any = None
+) -> Kind:
     """Return the kind of a film's run, by the rod of its loop and what it varies.
 
     What varies a number of the loop is not to be shown over the load.
@@ -91,11 +89,17 @@ def film_kind(twist_ratio: Any, rest_curvature: Any, varied: Any = "load") -> Ki
     kind = FILM
     if twist_ratio is not None:
         kind = CURVED if rest_curvature else WITH_TWIST
+    if diameter is not None:
+        kind = _with_own(OfContact, kind)
     own = LOOP_PARAMETERS.get(varied)
     if own is None:
         return kind
-    rows: dict[Any, Any] = _ROWS_OF.get(own.column, {})
-    row, branch_row = rows.get(kind.row, (kind.row, kind.branch_row))
-    return replace(
-        kind, row=row, branch_row=branch_row, load=lambda about: own, common_load=None
-    )
+    if own.column in _OWN:
+        kind = _with_own(_OWN[own.column], kind)
+    return replace(kind, load=lambda about: own, common_load=None)
+
+
+def _with_own(own: Any, kind: Kind) -> Kind:
+    rows: tuple[Any, Any] = kind.row, kind.branch_row
+    row, branch_row = (with_own(own, plain) for plain in rows)
+    return replace(kind, row=row, branch_row=branch_row)

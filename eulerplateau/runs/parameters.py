@@ -7,12 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-Parameter = Literal["load", "link", "twist_ratio", "rest_curvature"]
+Parameter = Literal["load", "link", "twist_ratio", "rest_curvature", "diameter"]
 # The key of the loop without which there is nothing to vary.
 NEEDED = {
     "link": "twist_ratio",
     "twist_ratio": "twist_ratio",
     "rest_curvature": "rest_curvature",
+    "diameter": "diameter",
 }
 
 
@@ -71,5 +72,13 @@ LOOP_PARAMETERS = {
         "q",
         "natural curvature over 2 pi / L",
         _energy_by_curvature,
+    ),
+    "diameter": LoopParameter(
+        "diameter",
+        "d",
+        "d/L",
+        "diameter",
+        # Of one that nothing is known of, as no film was found: a row that failed.
+        lambda row: math.nan if row.contact_force is None else row.contact_force,
     ),
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from functools import cache
 from typing import Any, Protocol
 
 from eulerplateau.film import LOADS, SPRING_LOAD
@@ -183,18 +184,6 @@ class _OfTwist:
 
 
 @dataclass(frozen=True)
-class _OfRatio:
-    """What a row says where the rigidity to twist is varied.
-
-    Attributes
-    ----------
-    twist_ratio : float, C / B
-    """
-
-    twist_ratio: float
-
-
-@dataclass(frozen=True)
 class TwistRow(_OfTwist, Row):
     """One load, or link, of a sweep of a loop that resists twist."""
 
@@ -202,16 +191,6 @@ class TwistRow(_OfTwist, Row):
 @dataclass(frozen=True)
 class TwistBranchRow(_OfTwist, BranchRow):
     """One point of a branch of a loop that resists twist."""
-
-
-@dataclass(frozen=True)
-class RatioRow(_OfRatio, TwistRow):
-    """One rigidity to twist of a sweep."""
-
-
-@dataclass(frozen=True)
-class RatioBranchRow(_OfRatio, TwistBranchRow):
-    """One point of a branch in the rigidity to twist."""
 
 
 @dataclass(frozen=True)
@@ -237,13 +216,52 @@ class CurvedRodBranchRow(_OfCurvedRod, BranchRow):
 
 
 @dataclass(frozen=True)
-class CurvedRatioRow(_OfRatio, CurvedRodRow):
-    """One rigidity to twist of a sweep of a loop that is curved by nature."""
+class OfRatio:
+    """What a row says besides where the rigidity to twist is varied.
+
+    Attributes
+    ----------
+    twist_ratio : float, C / B
+    """
+
+    twist_ratio: float
 
 
 @dataclass(frozen=True)
-class CurvedRatioBranchRow(_OfRatio, CurvedRodBranchRow):
-    """One point of a branch in it."""
+class OfDiameter:
+    """What a row says besides where the loop's thickness is varied.
+
+    Attributes
+    ----------
+    diameter : float, in units of L
+    """
+
+    diameter: float
+
+
+@dataclass(frozen=True)
+class OfContact:
+    """What a row says besides of a loop that has a thickness: None where it has none.
+
+    Attributes
+    ----------
+    contacts : int, at how many places strands touch; None if there is no film
+    contact_force : float, the sum of the forces with which they push, alpha / L^2
+    smallest_gap : float, between strands; None beyond half the diameter
+    crossing_angle : float, between the strands that push most, degrees, in [0, 90]
+    """
+
+    contacts: int | None
+    contact_force: float | None
+    smallest_gap: float | None
+    crossing_angle: float | None
+
+
+@cache
+def with_own(own: Any, row: Any) -> Any:
+    """Return the type of rows with the columns of `own` after those of `row`."""
+    made = type(f"{own.__name__}{row.__name__}", (own, row), {"__doc__": row.__doc__})
+    return dataclass(frozen=True)(made)
 
 
 @dataclass(frozen=True)

@@ -129,7 +129,9 @@ def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictErro
 def _opening(spec: RunSpec, overwrite: bool, resume: bool) -> Opening[Row]:
     """Return how the folder of a sweep is opened."""
     varied, loads = spec.sweep.varied, spec.values() if resume else None
-    row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature, varied).row
+    loop = spec.loop
+    rod = loop.twist_ratio, loop.rest_curvature
+    row_type = film_kind(*rod, varied, loop.diameter).row
     return Opening("sweep", row_type, spec.column(varied), overwrite, loads=loads)
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+import numpy as np
 from pydantic import Field, field_validator, model_validator
 
 from eulerplateau.errors import SpecError
-from eulerplateau.loop import LEAST
+from eulerplateau.loop import LEAST, MOST
 from eulerplateau.runs.loads import Loads, Values, in_order
 from eulerplateau.runs.parameters import Parameter
 from eulerplateau.settings import Settings
@@ -22,7 +23,7 @@ class SweepSettings(Settings):
     ----------
     loads : list of numbers, ranges {start, stop, step} and refinements
         {onset, nearest, farthest, count}; sorted, each value once.
-    parameter : "load", "link", "twist_ratio" or "rest_curvature"
+    parameter : "load", "link", "twist_ratio", "rest_curvature" or "diameter"
         What is varied; by default the load. Another one is varied at the load film.load.
     values : as loads, of that other parameter
     quantity : "kL3_alpha" or "k" for springs, "sigma_hat" or "sigma" for other films
@@ -131,8 +132,9 @@ _ENDS = {True: ("load_min", "load_max"), False: ("low", "high")}
 
 def check_positive(key: str, varied: str, values: list[float]) -> None:
     """Raise SpecError for values of a parameter that do not exist."""
-    least = LEAST[varied]
+    least, most = LEAST[varied], MOST.get(varied, np.inf)
     for value in values:
-        if value <= least:
-            problem = f"found {value:g}; {varied} should be above {least:g}"
+        if not least < value <= most:
+            bound = f"above {least:g}" if value <= least else f"at most {most:g}"
+            problem = f"found {value:g}; {varied} should be {bound}"
             raise SpecError(key, problem)

@@ -55,8 +55,9 @@ class Rod:
         return replace(bare, terms=terms)
 
     def _refuse_wrong_diameter(self) -> None:
-        if self.diameter is not None and not 0.0 < self.diameter <= MOST["diameter"]:
-            problem = f"found {self.diameter:g}; should be above 0, up to {MOST['diameter']:g}"
+        most = MOST["diameter"]
+        if self.diameter is not None and not 0.0 < self.diameter <= most:
+            problem = f"found {self.diameter:g}; should be above 0, up to {most:g}"
             raise SpecError("diameter", problem)
 
     def _refuse_without_twist(self) -> None:

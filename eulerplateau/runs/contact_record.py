@@ -72,4 +72,3 @@ def contact_data(problem: Problem, found: Equilibrium) -> dict[str, NDArray[Any]
         "contact_points": points,
         "contact_forces": forces,
     }
-

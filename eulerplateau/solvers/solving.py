@@ -78,7 +78,7 @@ def solve(
     shape, known = _start(problem, start)
     if tensions is not None:
         known = _tensions(problem, tensions)
-    minimise = _named(solver)
+    minimise = _solver_for(problem, solver)
     show = (lambda x_loop: None) if observe is None else observe
     with one_thread():
         return minimise(problem, _load(load), shape, known, _limit(max_iterations), show)
@@ -99,8 +99,8 @@ def sweep(
     """Yield one equilibrium per load, each started from the last shape.
 
     Or one per value of another `parameter`, "link" or "twist_ratio" of a loop that resists
-    twist, "diameter" of one that has it, at one `load`. A shape that is not finite is yielded, and not started from. See
-    `solve`.
+    twist, "diameter" of one that has it, at one `load`. A shape that is not finite is
+    yielded, and not started from. See `solve`.
     """
     if parameter == "load":
         if loads is None or values is not None or load is not None:
@@ -138,7 +138,7 @@ def follow_steps(
     shape, known = _start(problem, start)
     if tensions is not None:
         known = _tensions(problem, tensions)
-    return _swept(steps, shape, known, _named(solver), _limit(max_iterations))
+    return _swept(steps, shape, known, _solver_for(problem, solver), _limit(max_iterations))
 
 
 def check_values(problem: Problem, parameter: str, values: Iterable[float]) -> list[float]:
@@ -175,10 +175,12 @@ def _swept(
             shape, tensions = found.shape, found.tensions
 
 
-def _named(solver: str) -> Minimise:
-    if solver not in SOLVERS:
-        known = " or ".join(repr(name) for name in SOLVERS)
-        raise SpecError("solver", f"found {solver!r}; should be {known}")
+def _solver_for(problem: Problem, solver: str) -> Minimise:
+    known = ["newton"] if problem.loop.diameter is not None else list(SOLVERS)
+    if solver not in known:
+        names = " or ".join(repr(name) for name in known)
+        with_it = " for a loop with a diameter" if solver in SOLVERS else ""
+        raise SpecError("solver", f"found {solver!r}; should be {names}{with_it}")
     module = import_module(f"eulerplateau.solvers.{SOLVERS[solver]}")
     return cast(Minimise, module.minimise)
 

@@ -27,6 +27,8 @@ def warm() -> None:
     for curvature in (0.0, 0.5):
         rod = Problem(mesh, twist_ratio=0.75, link=0.3, rest_curvature=curvature)
         solve(rod, 500.0, start, max_iterations=8)
+    thick = Problem(mesh, "area", diameter=0.05)
+    solve(thick, 500.0, start, max_iterations=8)
     self_intersections(start, mesh.triangles)
     angle = 2 * np.pi * np.arange(200) / 200
     ellipse = np.stack([1.3 * np.cos(angle), np.sin(angle)], axis=1)

@@ -1,12 +1,14 @@
 from .adhesions import Adhesions as Adhesions
 from .bending import Bending as Bending, inextensible as inextensible
+from .contacts import Contacts as Contacts
 from .curved_rod import CurvedRod as CurvedRod
 from .edges import Edges as Edges, edges_of as edges_of
 from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
 from .frames import Frame as Frame, directors as directors
 from .free_bending import FreeBending as FreeBending
-from .held_gaps import HeldGaps as HeldGaps
+from .gaps import NO_GAPS as NO_GAPS, Gaps as Gaps
+from .held_gaps import HeldGaps as HeldGaps, with_gaps_held as with_gaps_held
 from .lengths import (
     Lengths as Lengths,
     Unconstrained as Unconstrained,
@@ -30,13 +32,8 @@ from .motions import (
     sliding as sliding,
 )
 from .rod import Rod as Rod
-from .strands import (
-    ALONG as ALONG,
-    NO_GAPS as NO_GAPS,
-    Gaps as Gaps,
-    Strands as Strands,
-    strands_of as strands_of,
-)
+from .strands import Strands as Strands, strands_of as strands_of
+from .stretches import ALONG as ALONG, evenly as evenly
 from .term import LEAST as LEAST, MOST as MOST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,

@@ -36,10 +36,13 @@ class Constraint(Protocol):
     def turns(self, x: FloatArray) -> EdgeTurns | None:
         """Return the turns of edges by which it is kept, if it keeps each edge's length."""
 
-    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
-        """Return the second derivative (n,) of tensions . c by each edge, if it has turns.
+    def split_stiffness(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray | None, FloatArray]:
+        """Return the second derivative of tensions . c in two parts, if it has turns.
 
-        The same number for all coordinates of an edge.
+        By positions (d n, d n) what is no edge's length, if anything is; and by each edge
+        (n,), the same number for all coordinates of it.
         """
 
 
@@ -97,8 +100,8 @@ class LoopEnergy:
 
         What is no form of the edges by positions, as `hessian` is; the rest by edges.
         """
-        by_edges = np.diag(self.constraint.edge_stiffness(tensions))
-        parts = []
+        others, edges = self.constraint.split_stiffness(x, tensions)
+        by_edges, parts = np.diag(edges), [] if others is None else [others]
         for term in self.terms.values():
             form = term.edge_hessian()
             if form is None:

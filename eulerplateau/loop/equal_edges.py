@@ -82,9 +82,11 @@ class EqualEdges:
     def turns(self, x: FloatArray) -> None:
         """Return None: edges may grow together."""
 
-    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+    def split_stiffness(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray | None, FloatArray]:
         """Return nothing: there are no turns to say it by."""
-        return np.zeros(0)
+        return None, np.zeros(0)
 
     def _shift(self, edges: Edges) -> float:
         """Return how far a vertex is from its place along its side, in edges."""

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.energy import Constraint
-from eulerplateau.loop.strands import Gaps, Strands
+from eulerplateau.loop.energy import Constraint, LoopEnergy
+from eulerplateau.loop.gaps import Gaps
+from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.strands import Strands, strands_of
+from eulerplateau.loop.turns import EdgeTurns
 
 _STEPS = 30
 _SMALL = 1e-12
@@ -29,32 +32,44 @@ class HeldGaps:
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Return the equations' derivatives (n + k, d n)."""
         at, _ = self.strands.at(x, self.gaps)
-        return np.vstack([self.lengths.jacobian(x), self.strands.jacobian(x, at)])
+        return np.vstack([self.lengths.jacobian(x), self.strands.between(x, at).jacobian()])
 
     def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return J^T tensions (n, d)."""
         n = len(x)
         at, _ = self.strands.at(x, self.gaps)
-        push = tensions[n:] @ self.strands.jacobian(x, at)
+        push = tensions[n:] @ self.strands.between(x, at).jacobian()
         return self.lengths.force(x, tensions[:n]) + push.reshape(x.shape)
 
     def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the second derivative (d n, d n) of tensions . c."""
         n, d = x.shape
         at, _ = self.strands.at(x, self.gaps)
-        whole = self.strands.hessian(x, at, tensions[n:])
+        whole = self.strands.between(x, at).hessian(tensions[n:], at.slides)
         shared = self.lengths.stiffness(x, tensions[:n])
         blocks = whole.reshape(n, d, n, d)
         for axis in range(d):
             blocks[:, axis, :, axis] += shared
         return whole
 
-    def turns(self, x: FloatArray) -> None:
-        """Return None: gaps are not kept by turning edges."""
+    def turns(self, x: FloatArray) -> EdgeTurns | None:
+        """Return the turns of the edges, with how they change the gaps."""
+        turns = self.lengths.turns(x)
+        if turns is None or not len(self.gaps):
+            return turns
+        at, _ = self.strands.at(x, self.gaps)
+        return replace(turns, others=self.strands.between(x, at).jacobian())
 
-    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
-        """Return no stiffness."""
-        return np.zeros(0)
+    def split_stiffness(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray | None, FloatArray]:
+        """Return what the gaps add by positions, and tensions / s (n,) by edges."""
+        n = len(x)
+        _, by_edges = self.lengths.split_stiffness(x, tensions[:n])
+        if not len(self.gaps):
+            return None, by_edges
+        at, _ = self.strands.at(x, self.gaps)
+        return self.strands.between(x, at).hessian(tensions[n:], at.slides), by_edges
 
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return a loop near by that keeps lengths and gaps, to rounding; None if lost.
@@ -72,7 +87,9 @@ class HeldGaps:
                 error, before = float(np.abs(excess / size).max()), error
                 if error < 1e-15 or (error < _SMALL and error >= 0.25 * before):
                     return x
-                rows = np.vstack([self.lengths.jacobian(x), self.strands.jacobian(x, at)])
+                rows = np.vstack(
+                    [self.lengths.jacobian(x), self.strands.between(x, at).jacobian()]
+                )
                 x = x - self._closing(rows, excess, x.shape)
             except LinAlgError:
                 return None
@@ -85,7 +102,9 @@ class HeldGaps:
     ) -> FloatArray:
         """Return the least displacement (n, d) that changes the equations by so much."""
         n, d = shape
-        by_vertex: FloatArray = np.ascontiguousarray(rows.reshape(-1, n, d).transpose(1, 0, 2))
+        by_vertex: FloatArray = np.ascontiguousarray(
+            rows.reshape(-1, n, d).transpose(1, 0, 2)
+        )
         moved: FloatArray = (self.strands.compliance @ by_vertex.reshape(n, -1)).reshape(
             by_vertex.shape
         )
@@ -93,3 +112,8 @@ class HeldGaps:
         shares = cho_solve(cho_factor(rows @ moved), excess)
         closing: FloatArray = (moved @ shares).reshape(shape)
         return closing
+
+
+def with_gaps_held(energy: LoopEnergy, loop: Loop, gaps: Gaps) -> LoopEnergy:
+    """Return an energy of a loop that has a diameter, with some gaps kept closed."""
+    return replace(energy, constraint=HeldGaps(energy.constraint, strands_of(loop), gaps))

@@ -162,9 +162,11 @@ class Lengths:
         """
         return None if is_uneven(self.loop) else edge_turns(self.loop, x)
 
-    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
-        """Return tensions / s (n,)."""
-        return tensions / self.loop.rest_lengths
+    def split_stiffness(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray | None, FloatArray]:
+        """Return nothing by positions, and tensions / s (n,) by edges."""
+        return None, tensions / self.loop.rest_lengths
 
 
 class Unconstrained:
@@ -189,6 +191,8 @@ class Unconstrained:
     def turns(self, x: FloatArray) -> None:
         """Return None: edges are not kept by turning."""
 
-    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+    def split_stiffness(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray | None, FloatArray]:
         """Return no stiffness."""
-        return np.zeros(0)
+        return None, np.zeros(0)

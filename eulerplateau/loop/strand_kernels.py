@@ -17,15 +17,14 @@ from numba import njit
 
 from eulerplateau.arrays import BoolArray, FloatArray
 
-# Newton's steps from a guess, the last one's length in parts of the loop, and by how much
-# the second derivative has to be positive.
+# Newton's steps from a guess, the last one's length in parts of the loop, that of one which
+# is not asked whether it goes downhill, and by how much the second derivative is positive.
 _STEPS = 60
 _SETTLED = 1e-14
+_TINY = 1e-9
 _CURVED = 1e-10
 # An edge's curve leaves its chord by a fraction of its length.
 _SLACK = 1.2
-# How much nearer chords may be than their curves are, in curvatures times squared edges.
-_SAGGING = 0.5
 # Minima nearer to each other, in parts of the loop, are the same.
 _SAME = 1e-7
 
@@ -36,7 +35,13 @@ def place(pieces: FloatArray, knots: FloatArray, s: float, out: FloatArray) -> N
     n, d = knots.shape[0] - 1, pieces.shape[2]
     whole = float(knots[n])
     s = s - whole * np.floor(s / whole)
-    e = min(max(np.searchsorted(knots, s, side="right") - 1, 0), n - 1)
+    e, beyond = 0, n
+    while beyond - e > 1:
+        middle = (e + beyond) // 2
+        if knots[middle] <= s:
+            e = middle
+        else:
+            beyond = middle
     u = s - knots[e]
     for k in range(d):
         a, b, c = pieces[e, 0, k], pieces[e, 1, k], pieces[e, 2, k]
@@ -46,10 +51,13 @@ def place(pieces: FloatArray, knots: FloatArray, s: float, out: FloatArray) -> N
 
 
 @njit(cache=True)
-def _derivatives(
-    p: FloatArray, q: FloatArray
+def _looked_at(
+    pieces: FloatArray, knots: FloatArray, s: float, t: float, here: FloatArray
 ) -> tuple[float, float, float, float, float, float]:
-    """Return f, f_s, f_t, f_ss, f_st, f_tt of what `place` says of two places."""
+    """Return f, f_s, f_t, f_ss, f_st, f_tt at two places; into `here` (2, 3, d) too."""
+    place(pieces, knots, s, here[0])
+    place(pieces, knots, t, here[1])
+    p, q = here[0], here[1]
     f, fs, ft, fss, fst, ftt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(p.shape[1]):
         r = p[0, k] - q[0, k]
@@ -63,60 +71,45 @@ def _derivatives(
 
 
 @njit(cache=True)
+def _downhill(
+    fs: float, ft: float, fss: float, fst: float, ftt: float, slides: bool
+) -> tuple[float, float]:
+    """Return Newton's step, of a second derivative that is made positive."""
+    least = _CURVED * (abs(fss) + abs(ftt))
+    if not slides:
+        return 0.0, -ft / max(abs(ftt), least)
+    lowest = 0.5 * (fss + ftt) - np.sqrt(0.25 * (fss - ftt) ** 2 + fst * fst)
+    lift = max(0.0, least - lowest)
+    a, b = fss + lift, ftt + lift
+    determinant = a * b - fst * fst
+    return -(b * fs - fst * ft) / determinant, -(a * ft - fst * fs) / determinant
+
+
+@njit(cache=True)
 def settle(
     pieces: FloatArray, knots: FloatArray, s: float, t: float, slides: bool
 ) -> tuple[float, float, float, float]:
     """Return where the distance is least near (s, t), it, and how it grows from there.
 
-    Newton's method, its steps at most an edge long and downhill; s stays where it is unless
-    it `slides`. What grows is D(s), the least distance by t: returned is d2D/ds2.
+    Newton's method, its steps at most two edges long and downhill; s stays where it is
+    unless it `slides`. What grows is D(s), the least distance by t: returned is d2D/ds2.
     """
-    n, d = knots.shape[0] - 1, pieces.shape[2]
-    p, q = np.empty((3, d)), np.empty((3, d))
-    longest = 2.0 * knots[n] / n
-    place(pieces, knots, s, p)
-    place(pieces, knots, t, q)
-    f, fs, ft, fss, fst, ftt = _derivatives(p, q)
+    here = np.empty((2, 3, pieces.shape[2]))
+    whole = float(knots[-1])
+    longest, tiny = 2.0 * whole / len(pieces), _TINY * whole
+    f, fs, ft, fss, fst, ftt = _looked_at(pieces, knots, s, t, here)
     for _ in range(_STEPS):
-        least = _CURVED * (abs(fss) + abs(ftt))
-        if slides:
-            determinant = fss * ftt - fst * fst
-            lift = 0.0
-            if determinant < least * (fss + ftt) or fss + ftt <= 0.0:
-                middle = 0.5 * (fss + ftt)
-                lowest = middle - np.sqrt(0.25 * (fss - ftt) ** 2 + fst * fst)
-                lift = max(least, least - lowest)
-            a, b = fss + lift, ftt + lift
-            determinant = a * b - fst * fst
-            ds, dt = -(b * fs - fst * ft) / determinant, -(a * ft - fst * fs) / determinant
-        else:
-            ds, dt = 0.0, -ft / max(ftt, abs(ftt), least)
+        ds, dt = _downhill(fs, ft, fss, fst, ftt, slides)
         size = max(abs(ds), abs(dt))
         if size > longest:
-            ds, dt = ds * longest / size, dt * longest / size
-        if size < _SETTLED * knots[n]:
-            s, t = s + ds, t + dt
-            break
-        falling = False
-        for _ in range(30):
-            place(pieces, knots, s + ds, p)
-            place(pieces, knots, t + dt, q)
-            after = _derivatives(p, q)[0]
-            if after < f:
-                falling = True
-                break
-            if size < 1e-9 * knots[n]:
-                break
+            ds, dt, size = ds * longest / size, dt * longest / size, longest
+        # Where rounding hides whether it falls, the last step is taken all the same.
+        while size > tiny and not _looked_at(pieces, knots, s + ds, t + dt, here)[0] < f:
             ds, dt, size = 0.5 * ds, 0.5 * dt, 0.5 * size
-        s, t = (s + ds, t + dt) if falling or size < 1e-9 * knots[n] else (s, t)
-        place(pieces, knots, s, p)
-        place(pieces, knots, t, q)
-        f, fs, ft, fss, fst, ftt = _derivatives(p, q)
-        if not falling:
+        s, t = s + ds, t + dt
+        f, fs, ft, fss, fst, ftt = _looked_at(pieces, knots, s, t, here)
+        if size < _SETTLED * whole:
             break
-    place(pieces, knots, s, p)
-    place(pieces, knots, t, q)
-    f, fs, ft, fss, fst, ftt = _derivatives(p, q)
     distance = np.sqrt(2.0 * f)
     if distance == 0.0 or ftt <= 0.0:
         return s, t, distance, -np.inf
@@ -163,17 +156,19 @@ def _nearest_nearby(x: FloatArray, i: int, j: int, distance: float, most: float)
 
 
 @njit(cache=True)
-def _near_chords(x: FloatArray, i: int, j: int, reach: float, slack: float) -> bool:
-    """Whether the edges i and j may come within reach: by their middles."""
+def _may_touch(
+    x: FloatArray, knots: FloatArray, i: int, j: int, reach: float, apart: float
+) -> bool:
+    """Whether edges i < j may come within reach, by their middles, far enough along."""
     n = x.shape[0]
-    i1, j1 = (i + 1) % n, (j + 1) % n
-    square, first, second = 0.0, 0.0, 0.0
+    if knots[j + 1] - knots[i] < apart or knots[n] - knots[j] + knots[i + 1] < apart:
+        return False
+    i1, j1 = i + 1, (j + 1) % n
+    square = 0.0
     for k in range(x.shape[1]):
         square += 0.25 * (x[i, k] + x[i1, k] - x[j, k] - x[j1, k]) ** 2
-        first += (x[i1, k] - x[i, k]) ** 2
-        second += (x[j1, k] - x[j, k]) ** 2
-    lengths = np.sqrt(first) + np.sqrt(second)
-    return bool(square < (reach + 0.5 * slack * lengths) ** 2)
+    lengths = knots[i1] - knots[i] + knots[j + 1] - knots[j]
+    return bool(square < (reach + 0.5 * _SLACK * lengths) ** 2)
 
 
 @njit(cache=True)
@@ -189,40 +184,40 @@ def _nearest_on_chord(x: FloatArray, point: FloatArray, j: int) -> float:
 
 
 @njit(cache=True)
-def _largest_bend(pieces: FloatArray, knots: FloatArray) -> float:
-    """Return the largest of |gamma''| at a vertex times the squared edge behind it."""
-    largest = 0.0
-    for i in range(pieces.shape[0]):
-        square = 0.0
-        for k in range(pieces.shape[2]):
-            square += 4.0 * pieces[i, 1, k] ** 2
-        largest = max(largest, np.sqrt(square) * (knots[i + 1] - knots[i]) ** 2)
-    return largest
+def _is_listed(found: FloatArray, count: int, s: float, t: float, whole: float) -> bool:
+    """Whether a pair of places is among the first rows of those that were found."""
+    for m in range(min(count, len(found))):
+        off = max(_apart(s, found[m, 0], whole), _apart(t, found[m, 1], whole))
+        if off < _SAME * whole:
+            return True
+    return False
 
 
 @njit(cache=True)
 def nearest_pairs(
-    x: FloatArray, pieces: FloatArray, knots: FloatArray, reach: float, apart: float
-) -> FloatArray:
-    """Return the local minima of the distance below reach: rows s, t, D, d2D/ds2; s < t.
+    x: FloatArray,
+    pieces: FloatArray,
+    knots: FloatArray,
+    reach: float,
+    apart: float,
+    sagging: float,
+    found: FloatArray,
+) -> int:
+    """Find the local minima of the distance below reach; return how many there are.
 
-    Of places at least `apart` from each other along the loop. x : (n, d), the vertices; all
-    pairs of edges are looked at.
+    Of places at least `apart` from each other along the loop: to rows of `found` (m, 4) go
+    s, t, D, d2D/ds2, s < t, as far as there is room. x : (n, d), the vertices; all pairs of
+    edges are looked at. Chords may be nearer by `sagging` than their curves are.
     """
     n = x.shape[0]
     whole = float(knots[n])
-    most = _SAGGING * _largest_bend(pieces, knots)
-    found = np.empty((16, 4))
     count = 0
     for i in range(n):
         for j in range(i + 2, n):
-            ahead = float(knots[j + 1] - knots[i])
-            if ahead < apart or whole - float(knots[j] - knots[i + 1]) < apart:
-                continue
-            if not _near_chords(x, i, j, reach, _SLACK):
+            if not _may_touch(x, knots, i, j, reach, apart):
                 continue
             a, b, distance = _closest_on_chords(x, i, j)
-            if not _nearest_nearby(x, i, j, distance, most):
+            if not _nearest_nearby(x, i, j, distance, sagging):
                 continue
             s = float(knots[i] + a * (knots[i + 1] - knots[i]))
             t = float(knots[j] + b * (knots[j + 1] - knots[j]))
@@ -231,18 +226,13 @@ def nearest_pairs(
                 continue
             s, t = s - whole * np.floor(s / whole), t - whole * np.floor(t / whole)
             s, t = min(s, t), max(s, t)
-            known = False
-            for m in range(count):
-                off = max(_apart(s, found[m, 0], whole), _apart(t, found[m, 1], whole))
-                known = known or bool(off < _SAME * whole)
-            if known:
+            if _is_listed(found, count, s, t, whole):
                 continue
-            if count == found.shape[0]:
-                found = np.concatenate((found, np.empty((count, 4))))
-            found[count, 0], found[count, 1] = s, t
-            found[count, 2], found[count, 3] = distance, grows
+            if count < len(found):
+                found[count, 0], found[count, 1] = s, t
+                found[count, 2], found[count, 3] = distance, grows
             count += 1
-    return found[:count].copy()
+    return count
 
 
 @njit(cache=True)
@@ -250,28 +240,26 @@ def nearest_to_places(
     x: FloatArray,
     pieces: FloatArray,
     knots: FloatArray,
-    offset: float,
+    offsets: FloatArray,
     reach: float,
     apart: float,
-) -> FloatArray:
-    """Return where strands ahead are closest to places: rows s, t, D, s', t', d2D/ds2.
+    found: FloatArray,
+) -> int:
+    """Find where other strands are closest to places; return how many there are.
 
-    There is a place s on every edge, in parts of it at `offset`; t > s, D below reach. At
-    (s', t') near by the distance is least by both; d2D/ds2 is what it is there.
+    There is a place s on every edge, in parts of it at `offsets` (n,). To rows of `found`
+    (m, 6) go s, t, D, s', t', d2D/ds2, D below reach; at (s', t') near by the
+    distance is least by both, and d2D/ds2 is that there.
     """
     n, d = x.shape
     whole = float(knots[n])
-    found, here = np.empty((16, 6)), np.empty((3, d))
+    here = np.empty((3, d))
     count = 0
     for i in range(n):
-        first = count
-        start = float(knots[i] + offset * (knots[i + 1] - knots[i]))
+        start = float(knots[i] + offsets[i] * (knots[i + 1] - knots[i]))
         place(pieces, knots, start, here)
-        for j in range(i + 1, n):
-            ahead = float(knots[j + 1] - knots[i])
-            if ahead < apart or whole - float(knots[j] - knots[i + 1]) < apart:
-                continue
-            if not _near_chords(x, i, j, reach, 2.0 * _SLACK):
+        for j in range(n):
+            if not _may_touch(x, knots, min(i, j), max(i, j), reach, apart):
                 continue
             b = _nearest_on_chord(x, here[0], j)
             if b < -_SLACK or b > 1.0 + _SLACK:
@@ -279,22 +267,18 @@ def nearest_to_places(
             guess = float(knots[j] + b * (knots[j + 1] - knots[j]))
             s, t, distance, _ = settle(pieces, knots, start, guess, False)
             t = t - whole * np.floor(t / whole)
-            if not distance < reach or _apart(s, t, whole) < apart or t < s:
+            if not distance < reach or _apart(s, t, whole) < apart:
                 continue
-            known = False
-            for m in range(first, count):
-                known = known or bool(_apart(t, found[m, 1], whole) < _SAME * whole)
-            if known:
+            if _is_listed(found, count, s, t, whole):
                 continue
-            if count == found.shape[0]:
-                found = np.concatenate((found, np.empty((count, 6))))
-            found[count, 0], found[count, 1], found[count, 2] = s, t, distance
-            s, t, _, grows = settle(pieces, knots, s, t, True)
-            found[count, 3], found[count, 4], found[count, 5] = s, t, grows
-            if _apart(s, t, whole) < apart:
-                found[count, 5] = -np.inf
+            a, b, _, grows = settle(pieces, knots, s, t, True)
+            if _apart(a, b, whole) < apart:
+                grows = -np.inf
+            if count < len(found):
+                found[count, 0], found[count, 1], found[count, 2] = s, t, distance
+                found[count, 3], found[count, 4], found[count, 5] = a, b, grows
             count += 1
-    return found[:count].copy()
+    return count
 
 
 @njit(cache=True)

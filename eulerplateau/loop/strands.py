@@ -9,17 +9,15 @@ fixed. A gap is D - d, d the diameter and D a least distance |gamma(s) - gamma(t
 - by t alone, s being a vertex's, along strands that lie beside each other, where d2D/ds2 is
   nearly 0, and least by s too means nothing.
 
-The arclengths are eliminated: with r = gamma(s) - gamma(t), n = r / D and a = phi(s) -
-phi(t) it is dD/dx_v = a_v n, and the second derivative is that at fixed arclengths,
-a a^T (I - n n^T) / D, less M K^-1 M^T, K the second derivative of D by the arclengths that
-are free and M the mixed one. Strands nearer along the loop than pi d / 2 do not touch where
-the curvature is below 2 / d.
+The arclengths are eliminated (gaps.py). Strands nearer along the loop than pi d / 2 do not
+touch where the curvature is below 2 / d.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import pi
 
 import numpy as np
@@ -27,78 +25,27 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.loop.gaps import NO_GAPS, Between, Gaps
 from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.strand_kernels import (
     nearest_pairs,
     nearest_to_places,
     settle_each,
 )
+from eulerplateau.loop.stretches import ALONG, of_one_strand, offsets
 
 # Strands touch at a point where they part at least so fast, d2D/ds2 in units of 1 / L:
 # a loop's curvature is 2 pi. One that touches at a point does so until half of that.
 _PARTING = 2.0
 _STAYS = 0.5
+# How much nearer chords may be than their curves are, in curvatures times squared edges.
+_SAGGING = 0.5
 # Parts of an edge within which two gaps are the same, or depend on each other.
 _BESIDE = 0.75
-# Edges within which strands that lie along each other do so.
-ALONG = 2.5
 # By how many edges the places of a gap may move while it is followed.
 _FOLLOWED = 5.0
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
 _SPREAD = 0.03
-
-
-@dataclass(frozen=True)
-class Gaps:
-    """Places where strands of a loop are near: k of them, at arclengths s and t.
-
-    Attributes
-    ----------
-    s, t : (k,) float
-    slides : (k,) bool, whether D is least by s too
-    """
-
-    s: FloatArray
-    t: FloatArray
-    slides: BoolArray
-
-    def __len__(self) -> int:
-        """Return k."""
-        return len(self.s)
-
-    def __getitem__(self, chosen: BoolArray) -> Gaps:
-        """Return those of them that are chosen (k,)."""
-        return Gaps(self.s[chosen], self.t[chosen], self.slides[chosen])
-
-    def joined(self, other: Gaps) -> Gaps:
-        """Return these and others behind them."""
-        parts = [(self.s, other.s), (self.t, other.t), (self.slides, other.slides)]
-        return Gaps(*(np.concatenate(pair) for pair in parts))
-
-
-NO_GAPS = Gaps(np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool))
-
-
-@dataclass(frozen=True)
-class _Between:
-    """What is known between the places of k gaps.
-
-    Attributes
-    ----------
-    weights : (k, n) float, a = phi(s) - phi(t)
-    slopes : (2, k, n) float, phi'(s) and -phi'(t)
-    normals : (k, d) float, from t to s
-    distances : (k,) float, D
-    along : (2, k, d) float, gamma'(s) and -gamma'(t)
-    bends : (2, k) float, n . gamma''(s) and -n . gamma''(t)
-    """
-
-    weights: FloatArray
-    slopes: FloatArray
-    normals: FloatArray
-    distances: FloatArray
-    along: FloatArray
-    bends: FloatArray
 
 
 @dataclass(frozen=True)
@@ -156,36 +103,40 @@ class Strands:
         where the first of them is on its own.
         """
         x = np.ascontiguousarray(x)
-        pieces, within = self._pieces(x), self.diameter + reach
-        pairs = nearest_pairs(x, pieces, self.knots, within, self.apart)
+        limits = self.diameter + reach, self.apart
+        pieces = self._pieces(x)
+        curve = x, pieces, self.knots
+        bends = 2 * np.linalg.norm(pieces[:, 1], axis=1) * self.loop.rest_lengths**2
+        sagging = _SAGGING * float(bends.max())
+        pairs = _rows(partial(nearest_pairs, *curve, *limits, sagging), 4)
         points = Gaps(pairs[:, 0], pairs[:, 1], np.ones(len(pairs), dtype=bool))
         crossing = (pairs[:, 3] >= _PARTING) & self.unlike(points, beside, ALONG)
-        offset = self._offset(beside)
-        rows = nearest_to_places(x, pieces, self.knots, offset, within, self.apart)
-        held = np.zeros(len(rows), dtype=bool)
-        least = Gaps(rows[:, 3], rows[:, 4], held)
-        along = (rows[:, 5] < _PARTING) | ~self.unlike(least, beside, ALONG)
+        looked_for = partial(
+            nearest_to_places, *curve, offsets(self.knots, beside), *limits
+        )
+        rows = _rows(looked_for, 6)
+        least = Gaps(rows[:, 3], rows[:, 4], np.zeros(len(rows), dtype=bool))
+        along: BoolArray = rows[:, 5] < _PARTING
+        along |= ~self.unlike(least, beside, ALONG)
         rows, pairs = rows[along & (rows[:, 5] > -np.inf)], pairs[crossing]
+        rows = rows[of_one_strand(self.knots, rows[:, 0], rows[:, 1], beside)]
         slides = np.arange(len(pairs) + len(rows)) < len(pairs)
         found = np.vstack([pairs[:, :3], rows[:, :3]])
         return Gaps(found[:, 0], found[:, 1], slides), found[:, 2] - self.diameter
 
-    def _offset(self, beside: Gaps) -> float:
-        """Return where on its edge the first of some places is, in parts of the edge."""
-        if not len(beside):
-            return 0.0
-        s = float(beside.s[0] % self.knots[-1])
-        edge = int(np.searchsorted(self.knots, s, side="right")) - 1
-        return float((s - self.knots[edge]) / self.loop.rest_lengths[edge])
-
     def unlike(self, gaps: Gaps, others: Gaps, edges: float = _BESIDE) -> BoolArray:
         """Return which of `gaps` (k,) are farther from others than that, on a strand."""
         reach = edges * self.loop.rest_lengths.max()
-        ends = (gaps.s, others.s), (gaps.t, others.t)
-        off = [np.abs(one[:, None] - other) for one, other in ends]
         whole = self.knots[-1]
-        near = [np.minimum(each, whole - each) < reach for each in off]
-        unlike: BoolArray = ~(near[0] & near[1]).any(axis=1)
+
+        def near(places: FloatArray, other: FloatArray) -> BoolArray:
+            off = np.abs(places[:, None] - other) % whole
+            close: BoolArray = np.minimum(off, whole - off) < reach
+            return close
+
+        same = near(gaps.s, others.s) & near(gaps.t, others.t)
+        turned = near(gaps.s, others.t) & near(gaps.t, others.s)
+        unlike: BoolArray = np.logical_not(np.any(same | turned, axis=1))
         return unlike
 
     def distinct(self, gaps: Gaps) -> BoolArray:
@@ -205,7 +156,8 @@ class Strands:
     def laid_along(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands touch at a point that lie along each other by now."""
         along: BoolArray = self.parting(x, gaps) < _STAYS * _PARTING
-        return gaps.slides & along
+        laid: BoolArray = gaps.slides & along
+        return laid
 
     def crossing(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands lie along each other that touch at a point by now."""
@@ -216,7 +168,8 @@ class Strands:
             ],
             dtype=bool,
         )
-        return ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
+        crossing: BoolArray = ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
+        return crossing
 
     def at(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
         """Return gaps followed to a loop x (n, d), and how wide they are (k,).
@@ -233,7 +186,7 @@ class Strands:
         rows = settle_each(pieces, self.knots, gaps.s, gaps.t, gaps.slides)
         return rows[:, :3], rows[:, 3]
 
-    def _between(self, x: FloatArray, gaps: Gaps) -> _Between:
+    def between(self, x: FloatArray, gaps: Gaps) -> Between:
         """Return what is known between places that are settled at x (n, d)."""
         whole = self.knots[-1]
         s, t = gaps.s % whole, gaps.t % whole
@@ -242,70 +195,25 @@ class Strands:
         curved = np.stack([self._basis(s, 2), -self._basis(t, 2)])
         across = weights @ x
         distances = np.linalg.norm(across, axis=1)
+        if not distances.all():
+            raise LinAlgError("strands of the loop meet")
         normals = across / distances[:, None]
         bends = np.einsum("ekn,nd,kd->ek", curved, x, normals, optimize=True)
-        return _Between(weights, slopes, normals, distances, slopes @ x, bends)
-
-    def jacobian(self, x: FloatArray, gaps: Gaps) -> FloatArray:
-        """Return how settled gaps change with the vertices (k, d n)."""
-        found = self._between(x, gaps)
-        rows: FloatArray = found.weights[:, :, None] * found.normals[:, None, :]
-        return rows.reshape(len(gaps), x.size)
-
-    def hessian(self, x: FloatArray, gaps: Gaps, shares: FloatArray) -> FloatArray:
-        """Return the second derivative (d n, d n) of shares (k,) times settled gaps."""
-        n, d = x.shape
-        total = np.zeros((n, d, n, d))
-        if not len(gaps):
-            return total.reshape(n * d, n * d)
-        found = self._between(x, gaps)
-        a, normals = found.weights, found.normals
-        across = np.eye(d) - normals[:, :, None] * normals[:, None, :]
-        across *= (shares / found.distances)[:, None, None]
-        for each, block in zip(a, across, strict=True):
-            total += np.multiply.outer(np.multiply.outer(each, block), each).transpose(
-                0, 1, 3, 2
-            )
-        mixed, inverse = self._eliminated(found, gaps.slides, x.size)
-        columns = np.einsum("k,kef,kfi->kei", shares, inverse, mixed)
-        whole: FloatArray = total.reshape(n * d, n * d)
-        flat = mixed.reshape(-1, x.size)
-        whole -= flat.T @ columns.reshape(-1, x.size)
-        return whole
-
-    def _eliminated(
-        self, found: _Between, slides: BoolArray, size: int
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return M (k, 2, d n) and K^-1 (k, 2, 2), which is 0 along s where s is held."""
-        along, normals, distances = found.along, found.normals, found.distances
-        flat = along - (along * normals).sum(axis=2)[:, :, None] * normals
-        flat /= distances[:, None]
-        mixed = found.slopes[..., None] * normals[:, None, :]
-        mixed = mixed + found.weights[:, :, None] * flat[:, :, None, :]
-        curved = np.einsum("eki,fki->kef", along, flat)
-        curved[:, 0, 0] += found.bends[0]
-        curved[:, 1, 1] += found.bends[1]
-        inverse = np.zeros_like(curved)
-        if slides.any():
-            inverse[slides] = np.linalg.inv(curved[slides])
-        inverse[~slides, 1, 1] = 1 / curved[~slides, 1, 1]
-        return mixed.reshape(2, -1, size).transpose(1, 0, 2), inverse
-
-    def angles(self, x: FloatArray, gaps: Gaps) -> FloatArray:
-        """Return the acute angle between the strands' tangents at settled gaps, degrees."""
-        along = self._between(x, gaps).along
-        unit = along / np.linalg.norm(along, axis=2)[:, :, None]
-        cosine = np.abs((unit[0] * unit[1]).sum(axis=1))
-        sine = np.linalg.norm(
-            unit[0] - np.sign((unit[0] * unit[1]).sum(axis=1))[:, None] * unit[1], axis=1
-        )
-        half: FloatArray = np.degrees(
-            2 * np.arctan2(0.5 * sine, np.sqrt(0.5 * (1 + cosine)))
-        )
-        return half
+        return Between(weights, slopes, normals, distances, slopes @ x, bends)
 
 
 def strands_of(loop: Loop) -> Strands:
     """Return the strands of a loop that has a diameter."""
     assert loop.diameter is not None
     return Strands(loop, loop.diameter, 0.5 * pi * loop.diameter)
+
+
+def _rows(look: Callable[[FloatArray], int], columns: int) -> FloatArray:
+    """Return all rows that a search finds, which is told how many it has room for."""
+    room = 64
+    while True:
+        found = np.empty((room, columns))
+        count = look(found)
+        if count <= room:
+            return found[:count]
+        room = 2 * count

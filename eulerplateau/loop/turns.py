@@ -51,6 +51,10 @@ class LengthMetric:
         solution: FloatArray = columns.T.reshape(rhs.shape)
         return solution
 
+    def force(self, tensions: FloatArray) -> FloatArray:
+        """Return J^T tensions (n_b, d), for tensions (n_b,)."""
+        return -backward_differences(tensions[:, None] * self.directions)
+
     def balance(self, forces: FloatArray) -> FloatArray:
         """Return the tensions (n_b,) that leave least of forces (n_b, d).
 
@@ -80,10 +84,13 @@ class EdgeTurns:
     across : (d - 1, n, d) float
         The columns N_v of each edge, sqrt(s_v) long: y_v is sqrt(s_v) times an angle.
     metric : how tensions act on this loop
+    others : (k, d n) float
+        Derivatives of what the loop is held to beside its edges' lengths; by default none.
     """
 
     across: FloatArray
     metric: LengthMetric
+    others: FloatArray | None = None
 
     @property
     def weights(self) -> FloatArray:

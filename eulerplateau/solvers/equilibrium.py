@@ -13,7 +13,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
 
 if TYPE_CHECKING:
-    from eulerplateau.solvers.contact.contacts import Contacts
+    from eulerplateau.loop import Contacts
 
 # What an accepted equilibrium meets: force imbalance relative to the largest force, and
 # relative error of every loop edge's length.

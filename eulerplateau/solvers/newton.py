@@ -91,7 +91,13 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     """
     film = problem.film.of_loop(found.shape)
     energy = film.energy(problem.loop, found.load)
-    models = models_for(problem.film, problem.loop, energy)
+    if found.contacts is None:
+        models = models_for(problem.film, problem.loop, energy)
+    else:
+        from eulerplateau.loop import with_gaps_held
+
+        places = found.contacts.places
+        models = DenseModels(with_gaps_held(energy, problem.loop, places))
     x_loop = film.project(found.shape.x_loop)
     model = models.at(x_loop).dense
     modes = {}

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.errors import SpecError
-from eulerplateau.film import Film, make_film
+from eulerplateau.errors import MeshError, SpecError
+from eulerplateau.film import Film, FilmOfLoop, make_film
 from eulerplateau.loop import Loop, Rod, kernels, largest_turning, remove_sliding
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers.equilibrium import (
@@ -112,6 +112,16 @@ class Problem:
                 "start", f"has shape {positions.shape}; should be {self.disk.x.shape}"
             )
         return self.disk.shape.moved(positions)
+
+    def tied_film(self) -> FilmOfLoop | None:
+        """Return the film of least Dirichlet energy, tied to the mesh as it was given.
+
+        It can be spanned across any loop, however crumpled. None if the mesh is no good.
+        """
+        try:
+            return make_film(self.disk, "dirichlet").of_loop(self.disk.shape)
+        except (MeshError, LinAlgError):
+            return None
 
     def bending_energy(self, shape: Shape) -> tuple[float, FloatArray]:
         """Return the loop's bending energy and its gradient (n_v, 3)."""

@@ -176,8 +176,13 @@ def _by_turns(
     free: FloatArray,
     turns: EdgeTurns,
 ) -> tuple[Coordinates, FloatArray, FloatArray, FloatArray]:
-    tensions, unbalanced = balanced(energy, x, force, free, turns.metric)
-    coordinates = turned(turns, free)
+    if turns.others is None:
+        tensions, unbalanced = balanced(energy, x, force, free, turns.metric)
+        coordinates = turned(turns, free)
+    else:
+        tensions, unbalanced = _balanced_by_all(energy, force, free, turns)
+        weights = np.repeat(energy.weights, x.shape[1])[:, None]
+        coordinates = turned(turns, np.hstack([free, turns.others.T / weights]))
     gradient = coordinates.slope(unbalanced.reshape(-1, 1))[:, 0]
     return coordinates, tensions, gradient, unbalanced
 
@@ -201,6 +206,28 @@ def balanced(
     return tensions, left.reshape(x.shape)
 
 
+def _balanced_by_all(
+    energy: LoopEnergy, force: FloatArray, free: FloatArray, turns: EdgeTurns
+) -> tuple[FloatArray, FloatArray]:
+    """Return the same of a loop that is held to more than its lengths: tensions (n + k,).
+
+    Tensions balance each other equation's force first, and what they leave is independent.
+    """
+    assert turns.others is not None
+    metric, shape = turns.metric, force.shape
+    root = np.repeat(np.sqrt(energy.weights), shape[1])[:, None]
+    parts = [force, *turns.others.reshape(-1, *shape)]
+    tensions = [metric.balance(part) for part in parts]
+    left = [part + metric.force(pull) for part, pull in zip(parts, tensions, strict=True)]
+    columns = np.stack([each.ravel() for each in left], axis=1) / root
+    others = np.hstack([columns[:, 1:], free * root])
+    shares = np.linalg.lstsq(others, -columns[:, 0], rcond=None)[0]
+    unbalanced = (columns[:, :1] + others @ shares[:, None]) * root
+    pushes = shares[: len(turns.others)]
+    pulls = tensions[0] + np.stack(tensions[1:], axis=1) @ pushes
+    return np.concatenate([pulls, pushes]), unbalanced.reshape(shape)
+
+
 def orthonormal(energy: LoopEnergy, free: FloatArray) -> FloatArray:
     """Return motions (d n, k) made orthonormal in the norm of the weights, times these."""
     root = np.repeat(np.sqrt(energy.weights), len(free) // len(energy.weights))[:, None]
@@ -217,8 +244,10 @@ def _by_columns(
     m = len(rows)
     normals = np.hstack([(rows / scale).T, free * scale[:, None]])
     q, r = np.linalg.qr(normals, mode="complete")
-    tensions = -np.linalg.solve(r[:m, :m], q[:, :m].T @ weighted)
-    basis = q[:, m + free.shape[1] :]
+    # What is along free motions is not for tensions to balance.
+    known = m + free.shape[1]
+    tensions = -np.linalg.solve(r[:known], q[:, :known].T @ weighted)[:m]
+    basis = q[:, known:]
     gradient = basis.T @ weighted
     unbalanced = basis @ gradient * scale
     return Columns(basis, scale), tensions, gradient, unbalanced.reshape(x.shape)

@@ -9,8 +9,7 @@ from typing import cast
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.errors import MeshError
-from eulerplateau.film import AreaOfLoop, FilmOfLoop, make_film
+from eulerplateau.film import AreaOfLoop, FilmOfLoop
 from eulerplateau.loop import close_with_lengths, largest_turning
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent, State
@@ -52,7 +51,7 @@ def search(
     x_loop = close_with_lengths(problem.loop, start.x_loop) if smooth is None else smooth
     if x_loop is None:
         return None
-    if smooth is not None and (tied := tied_film(problem)) is not None:
+    if smooth is not None and (tied := problem.tied_film()) is not None:
         start = tied.shape(x_loop)
     # Blocks of a hundred rows: two threads would mostly wait for each other.
     with one_thread():
@@ -60,24 +59,13 @@ def search(
             found = _near(problem, start, x_loop, load, max_iterations, observe)
             if found is not None:
                 return found
-        tied = tied_film(problem)
+        tied = problem.tied_film()
         if tied is None:
             return None
         models = quadratic_models(problem.loop, tied.energy(problem.loop, load))
         state, _ = Descent(models, max_iterations).run(x_loop)
         shape = tied.shape(state.model.x)
         return _near(problem, shape, shape.x_loop, load, max_iterations, observe)
-
-
-def tied_film(problem: Problem) -> FilmOfLoop | None:
-    """Return the film of least Dirichlet energy, tied to the mesh as it was given.
-
-    It can be spanned across any loop, however crumpled.
-    """
-    try:
-        return make_film(problem.disk, "dirichlet").of_loop(problem.disk.shape)
-    except (MeshError, LinAlgError):
-        return None
 
 
 def _models(problem: Problem, film: FilmOfLoop, load: float) -> Models:

@@ -75,7 +75,9 @@ class ConstraintInColumn:
     def turns(self, y: FloatArray) -> None:
         return None
 
-    def edge_stiffness(self, tensions: FloatArray) -> FloatArray:
+    def split_stiffness(
+        self, x: FloatArray, tensions: FloatArray
+    ) -> tuple[FloatArray | None, FloatArray]:
         raise AssertionError("it has no turns")
 
 

@@ -83,7 +83,8 @@ def test_shapes_hold_contacts_with_their_forces(swept: Path) -> None:
     free, touching = (read_vtp(run.shape_path(row)).field_data for row in run.rows)
     assert free["contact_forces"].size == free["contact_points"].size == 0
     assert touching["diameter"].tolist() == free["diameter"].tolist() == [THICK]
-    points, forces = touching["contact_points"].reshape(-1, 2, 3), touching["contact_forces"]
+    points = touching["contact_points"].reshape(-1, 2, 3)
+    forces = touching["contact_forces"]
     assert len(points) == len(forces) == run.rows[1].contacts
     apart = np.linalg.norm(points[:, 0] - points[:, 1], axis=1)
     np.testing.assert_allclose(apart, THICK, rtol=1e-9)

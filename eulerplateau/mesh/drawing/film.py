@@ -75,9 +75,7 @@ def loop_tube(
     return wire.tube(radius=radius, n_sides=24)
 
 
-def loop_stripe(
-    x_loop: FloatArray, across: FloatArray, radius: float = LOOP_RADIUS
-) -> Any:
+def loop_stripe(x_loop: FloatArray, across: FloatArray, radius: float = LOOP_RADIUS) -> Any:
     """Return a stripe (PolyData) along the tube of `loop_tube`, from the first edge on.
 
     It lies where directions (n_b, 3) across the edges point. It is open: where the rod was

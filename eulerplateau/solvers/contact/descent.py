@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-
-import numpy as np
-from scipy.linalg import LinAlgError
+from functools import cached_property
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
-from eulerplateau.loop import ALONG, NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands, passed
+from eulerplateau.loop import Gaps, LoopEnergy, Strands, passed
+from eulerplateau.solvers.contact.keeping import Keeping, Touching
 from eulerplateau.solvers.descent import (
     FIRST_RADIUS,
     LARGEST_RADIUS,
@@ -27,7 +26,7 @@ from eulerplateau.solvers.descent import (
     noise_of,
 )
 from eulerplateau.solvers.equilibrium import Status
-from eulerplateau.solvers.second_variation import TangentModel, stability, tangent_model
+from eulerplateau.solvers.second_variation import TangentModel, stability
 
 # A gap, in units of L, that is closed; one that is negative; and by which part of the
 # diameter strands may overlap before they are pushed back.
@@ -38,45 +37,6 @@ _DEEP = 0.25
 _ROUNDS = 6
 # Times a step is halved in search of where strands that stop it begin to touch.
 _HALVINGS = 16
-# The residual below which it is asked whether strands pull, and what counts as pulling:
-# so much of the largest tension, and what an unbalanced force would account for.
-_ASKED = 1e-3
-_PULLS = 1e-9
-# By which part of the diameter strands may overlap between vertices at which they are held
-# along each other; and how often that is mended.
-_BETWEEN = 1e-3
-_CHANGES = 6
-
-
-@dataclass(frozen=True)
-class Touching:
-    """A loop with the gaps that are closed on it, and the model that keeps them.
-
-    At places of `laid` strands touched at a point on the way, and lay along each other.
-    """
-
-    model: TangentModel
-    gaps: Gaps
-    laid: Gaps
-    radius: float
-    iteration: int
-
-    @property
-    def beside(self) -> Gaps:
-        """Places where strands lie along each other, or did so on the way."""
-        return self.laid.joined(self.gaps[~self.gaps.slides])
-
-    @property
-    def forces(self) -> FloatArray:
-        """The forces (k,) with which strands push each other, alpha / L^2."""
-        return -self.model.tensions[len(self.model.x) :]
-
-    @property
-    def uncertain(self) -> float:
-        """What such a force can be off by, as far as forces do not balance."""
-        tensions = self.model.tensions
-        largest = float(np.abs(tensions).max())
-        return largest * (_PULLS + len(tensions) * self.model.residual)
 
 
 @dataclass(frozen=True)
@@ -94,24 +54,20 @@ class ContactDescent:
 
         Or from where one has come to `before`, of a film made elsewhere.
         """
-        if before is None:
-            near, _ = self.strands.near(x, CLOSED)
-            state = self._at(x, near, NO_GAPS, FIRST_RADIUS, 0)
-        else:
-            state = self._at(x, before.gaps, before.laid, FIRST_RADIUS, 0)
-        changes = 0
+        state = self._begun(x, before)
         while state.iteration < self.max_iterations:
             heed()
-            if (other := self._let_go(state) or self._crossing(state)) is not None:
+            other = self.keeping.let_go(state) or self.keeping.crossing(state)
+            if other is not None:
                 state = other
                 continue
             if at_rounding(state.model) and stability(state.model).n_unstable == 0:
-                other = self._parted(state) if changes < _CHANGES else None
+                other = self.keeping.mended(state)
                 if other is None:
                     return state, Status.CONVERGED
-                state, changes = other, changes + 1
+                state = other
                 continue
-            after = self._advance(state) or self._let_go(state, np.inf)
+            after = self._advance(state) or self.keeping.let_go(state, stuck=True)
             if after is None:
                 return state, Status.STALLED
             state = after
@@ -120,77 +76,16 @@ class ContactDescent:
                 break
         return state, Status.ITERATION_LIMIT
 
-    def held(self, gaps: Gaps) -> HeldGaps:
-        """Return the constraint that keeps gaps closed."""
-        return HeldGaps(self.energy.constraint, self.strands, gaps)
+    def _begun(self, x: FloatArray, before: Touching | None) -> Touching:
+        if before is None:
+            return self.keeping.at(x, self.strands.near(x, CLOSED)[0], FIRST_RADIUS)
+        state = self.keeping.moved(before, x, before.gaps, FIRST_RADIUS)
+        return replace(state, iteration=0)
 
-    def _at(
-        self, x: FloatArray, gaps: Gaps, laid: Gaps, radius: float, iteration: int
-    ) -> Touching:
-        """Return the state on a loop with these gaps, those of one place only once.
-
-        Strands that come to lie along each other are held there, and touch at no point.
-        """
-        along = self.strands.laid_along(x, gaps)
-        if along.any():
-            # Where they were before: along each other they are nearest anywhere.
-            laid = laid.joined(gaps[along])
-            gaps = replace(gaps, slides=gaps.slides & ~along)
-        gaps, _ = self.strands.at(x, gaps)
-        gaps = gaps[self.strands.distinct(gaps)]
-        energy = replace(self.energy, constraint=self.held(gaps))
-        return Touching(tangent_model(energy, x), gaps, laid, radius, iteration)
-
-    def _with(self, state: Touching, x: FloatArray, gaps: Gaps, radius: float) -> Touching:
-        return self._at(x, gaps, state.laid, radius, state.iteration + 1)
-
-    def _let_go(self, state: Touching, most: float = _ASKED) -> Touching | None:
-        """Return the state without the strands that pull at each other; None if none do.
-
-        It is not asked where forces are unbalanced by more than `most`.
-        """
-        if state.model.residual > most or not len(state.gaps):
-            return None
-        certain = state.uncertain if most < np.inf else 0.0
-        pushing = state.forces >= -certain
-        if pushing.all():
-            return None
-        return self._with(state, state.model.x, state.gaps[pushing], state.radius)
-
-    def _crossing(self, state: Touching) -> Touching | None:
-        """Return the state with strands touching at points that no longer lie along.
-
-        None if they do so nowhere. The energy may rise by a force times the tiny gap that
-        is closed.
-        """
-        x, gaps = state.model.x, state.gaps
-        crossing = self.strands.crossing(x, gaps)
-        if not crossing.any():
-            return None
-        kept, changed = gaps[~crossing], gaps[crossing]
-        laid = state.laid[self.strands.unlike(state.laid, changed, ALONG)]
-        points, _ = self.strands.at(x, replace(changed, slides=crossing[crossing]))
-        after = kept.joined(points[self.strands.distinct(points)])
-        closed = self._closed(x, after)
-        if closed is None:
-            return None
-        return self._at(*closed, laid, state.radius, state.iteration + 1)
-
-    def _parted(self, state: Touching) -> Touching | None:
-        """Return the state with points where strands overlap between two vertices' gaps.
-
-        None if they do so nowhere, or by so little that an edge's length accounts for it.
-        """
-        x, gaps = state.model.x, state.gaps
-        near, _ = self.strands.near(x, -_BETWEEN * self.strands.diameter)
-        points = near[near.slides]
-        points = points[self.strands.unlike(points, gaps[gaps.slides])]
-        if not len(points):
-            return None
-        kept = gaps.slides | self.strands.unlike(gaps, points, 1.05)
-        after = gaps[kept].joined(points)
-        closed = self._closed(x, after)
-        return None if closed is None else self._with(state, *closed, state.radius)
+    @cached_property
+    def keeping(self) -> Keeping:
+        """How gaps are kept closed."""
+        return Keeping(self.energy, self.strands)
 
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
@@ -209,7 +104,7 @@ class ContactDescent:
                 ):
                     grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
                     wider = min(2 * radius, LARGEST_RADIUS) if grow else radius
-                    return self._with(state, x, gaps, wider)
+                    return self.keeping.moved(state, x, gaps, wider)
             stopped = self._stopped(state, step.moved)
             if stopped is not None:
                 return stopped
@@ -225,7 +120,7 @@ class ContactDescent:
         """
         x, after, gaps = state.model.x, state.model.x + moved, state.gaps
         for _ in range(_ROUNDS):
-            closed = self._closed(after, gaps)
+            closed = self.keeping.closed(after, gaps)
             if closed is None or passed(x, closed[0]):
                 return None
             after, gaps = closed
@@ -236,25 +131,6 @@ class ContactDescent:
                 noise = noise_of(self.energy, x, after - x, state.model.tensions)
                 return after, gaps, noise
             gaps = amended
-        return None
-
-    def _closed(self, x: FloatArray, gaps: Gaps) -> tuple[FloatArray, Gaps] | None:
-        """Return the loop next to x with gaps closed, and them: those that met count once.
-
-        None if they cannot be.
-        """
-        for _ in range(len(gaps) + 1):
-            found = self.held(gaps).project(x)
-            if found is None:
-                return None
-            try:
-                after, _ = self.strands.at(found, gaps)
-            except LinAlgError:
-                return None
-            distinct = self.strands.distinct(after)
-            if distinct.all():
-                return found, gaps
-            gaps = gaps[distinct]
         return None
 
     def _amended(self, x: FloatArray, gaps: Gaps, beside: Gaps) -> Gaps | None:
@@ -279,7 +155,7 @@ class ContactDescent:
         """
         x, free, stopped, part = state.model.x, 0.0, 1.0, 1.0
         for _ in range(_HALVINGS):
-            straight = self._closed(x + part * moved, state.gaps)
+            straight = self.keeping.closed(x + part * moved, state.gaps)
             found = None if straight is None else self._stopped_at(state, *straight)
             if found is not None:
                 return found
@@ -303,10 +179,12 @@ class ContactDescent:
     ) -> Touching | None:
         """Return the state where strands touch that overlap on a loop, if that is lower."""
         x = state.model.x
-        amended = None if passed(x, straight) else self._amended(straight, gaps, state.beside)
+        amended = (
+            None if passed(x, straight) else self._amended(straight, gaps, state.beside)
+        )
         if amended is None or amended is gaps:
             return None
-        closed = self._closed(straight, amended)
+        closed = self.keeping.closed(straight, amended)
         if closed is None or len(closed[1]) < len(amended):
             return None
         found, gaps = closed
@@ -316,4 +194,4 @@ class ContactDescent:
         noise = noise_of(self.energy, x, found - x, state.model.tensions)
         if gained is None or gained > max(noise, CLOSED * state.uncertain):
             return None
-        return self._with(state, found, gaps, state.radius)
+        return self.keeping.moved(state, found, gaps)

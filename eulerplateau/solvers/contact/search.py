@@ -6,25 +6,27 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import close_with_lengths, strands_of
+from eulerplateau.loop import Contacts, Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers.contact.contacts import contacts_of
-from eulerplateau.solvers.contact.descent import ContactDescent, Touching
+from eulerplateau.solvers.contact.descent import ContactDescent
+from eulerplateau.solvers.contact.keeping import Keeping, Touching
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.second_variation import TangentModel, stability
-from eulerplateau.solvers.soap import tied_film
 from eulerplateau.threads import one_thread
 
 # A soap film is sought near the last shape at most so many times in one solve.
 _SHAPES = 60
 # The residual at which a film that has tilted from where it was made is made anew.
 _CLOSE = 1e-5
+# By which part of the diameter strands may overlap between the vertices they are held at.
+_OVERLAP = 1e-2
 
 
 def search(
@@ -49,16 +51,34 @@ def search(
         return None
     with one_thread():
         found = _near(problem, start, x_loop, load, max_iterations, observe)
-        if found is not None or problem.film.dimension == 2:
+        lost = found is None or found.status is Status.STALLED
+        if not lost or problem.film.dimension == 2:
             return found
-        # A film tied to the mesh as it was given can be spanned across any loop.
-        tied = tied_film(problem)
-        if tied is None:
-            return None
-        energy = tied.energy(problem.loop, load)
+        other = _from_tied(problem, x_loop, load, max_iterations, observe)
+        return other if found is None or (other is not None and other.converged) else found
+
+
+def _from_tied(
+    problem: Problem,
+    x_loop: FloatArray,
+    load: float,
+    max_iterations: int,
+    observe: Callable[[FloatArray], None],
+) -> Equilibrium | None:
+    """Return what a film comes to from where one goes that is tied to its mesh.
+
+    That can be spanned across any loop. None if there is none even then.
+    """
+    tied = problem.tied_film()
+    if tied is None:
+        return None
+    energy, strands = tied.energy(problem.loop, load), strands_of(problem.loop)
+    try:
         state, _ = ContactDescent(energy, strands, max_iterations).run(x_loop)
-        shape = tied.shape(state.model.x)
-        return _near(problem, shape, state.model.x, load, max_iterations, observe)
+    except LinAlgError:
+        return None
+    shape = tied.shape(state.model.x)
+    return _near(problem, shape, state.model.x, load, max_iterations, observe)
 
 
 def _near(
@@ -91,7 +111,9 @@ def _near(
         shape = film.shape(x_loop)
         found = partial(_record, problem, load, film, shape, state, spent)
         own = energy.holds(x_loop) and film.made_at(x_loop)
-        if own or status is Status.STALLED or spent >= max_iterations:
+        # A film that gets stuck away from where it was made may not, made anew.
+        stuck = status is Status.STALLED and state.iteration == 0
+        if own or stuck or spent >= max_iterations:
             return found(status)
     return None if found is None else found(status)
 
@@ -110,13 +132,42 @@ def _record(
     spent: int,
     status: Status,
 ) -> Equilibrium:
-    contacts = contacts_of(strands_of(problem.loop), film, state)
-    tensions = state.model.tensions[: len(state.model.x)]
-    found = problem.equilibrium(shape, tensions, load, status)
-    found = replace(
-        found,
-        iterations=spent,
-        contacts=contacts,
-        residual=problem.residual(shape, tensions, load, contacts.pushes),
+    strands, tensions = strands_of(problem.loop), state.model.tensions
+    contacts = _contacts(strands, film, state)
+    if contacts.doubtful.any():
+        energy = film.energy(problem.loop, load)
+        fewer = Keeping(energy, strands).without(state, contacts.doubtful)
+        index = stability(fewer.model).n_unstable
+        contacts = replace(contacts, unstable_let_go=index)
+    on_edges = tensions[: len(state.model.x)]
+    found = problem.equilibrium(shape, on_edges, load, status)
+    residual = problem.residual(shape, on_edges, load, contacts.pushes)
+    found = replace(found, iterations=spent, contacts=contacts, residual=residual)
+    found = with_stability(found, stability(state.model))
+    if contacts.forces.min(initial=0.0) < -state.uncertain:
+        return replace(found, status=Status.STALLED)
+    # What vertices do not see of strands along each other is an edge's length's fault.
+    coarse = found.converged and contacts.smallest_gap < -_OVERLAP * strands.diameter
+    return replace(found, status=Status.UNRESOLVED) if coarse else found
+
+
+def _contacts(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
+    """Return the contacts of a loop that a descent has come to."""
+    x, gaps = state.model.x, state.gaps
+    curve, between = strands.curve(x), strands.between(x, gaps)
+    places = np.stack([curve(gaps.s), curve(gaps.t)])
+    _, widths = strands.at(x, gaps)
+    _, near = strands.near(x, 0.5 * strands.diameter)
+    pushes = -state.forces @ between.jacobian()
+    return Contacts(
+        s=gaps.s,
+        t=gaps.t,
+        points=np.stack([film.lift(each) for each in places]),
+        forces=state.forces,
+        gaps=widths,
+        angles=between.angles(),
+        at_a_point=gaps.slides,
+        uncertain=state.uncertain,
+        pushes=film.lift(pushes.reshape(x.shape)),
+        smallest_gap=float(near.min(initial=np.inf)),
     )
-    return with_stability(found, stability(state.model))

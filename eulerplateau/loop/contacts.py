@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from eulerplateau.arrays import BoolArray, FloatArray
-from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import Strands
-from eulerplateau.solvers.contact.descent import Touching
+from eulerplateau.loop.gaps import Gaps
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Contacts:
     """The contacts of a loop: k of them, lengths in units of L, forces in alpha / L^2.
 
@@ -29,6 +25,8 @@ class Contacts:
     uncertain : float, what a force can be off by
     pushes : (n_b, 3) float, what the contacts add to the energy's gradient
     smallest_gap : float, of all places, touching or not; infinite beyond half the diameter
+    unstable_let_go : int or None
+        The Morse index with the doubtful contacts let go; None where none is doubtful.
     """
 
     s: FloatArray
@@ -41,10 +39,20 @@ class Contacts:
     uncertain: float
     pushes: FloatArray
     smallest_gap: float
+    unstable_let_go: int | None = None
 
     def __len__(self) -> int:
         """Return k."""
         return len(self.s)
+
+    def __repr__(self) -> str:
+        """Return one line: how many contacts, and their force."""
+        return f"<Contacts: {len(self)}, force {self.force:.6g}>"
+
+    @property
+    def places(self) -> Gaps:
+        """The gaps that are closed."""
+        return Gaps(self.s, self.t, self.at_a_point)
 
     @property
     def force(self) -> float:
@@ -55,25 +63,3 @@ class Contacts:
     def doubtful(self) -> BoolArray:
         """Which of the forces (k,) cannot be told from none."""
         return self.forces <= self.uncertain
-
-
-def contacts_of(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
-    """Return the contacts of a loop that a descent has come to."""
-    x, gaps = state.model.x, state.gaps
-    curve = strands.curve(x)
-    places = np.stack([curve(gaps.s), curve(gaps.t)])
-    _, widths = strands.at(x, gaps)
-    _, near = strands.near(x, 0.5 * strands.diameter)
-    pushes = -state.forces @ strands.jacobian(x, gaps)
-    return Contacts(
-        s=gaps.s,
-        t=gaps.t,
-        points=np.stack([film.lift(each) for each in places]),
-        forces=state.forces,
-        gaps=widths,
-        angles=strands.angles(x, gaps),
-        at_a_point=gaps.slides,
-        uncertain=state.uncertain,
-        pushes=film.lift(pushes.reshape(x.shape)),
-        smallest_gap=float(near.min(initial=np.inf)),
-    )

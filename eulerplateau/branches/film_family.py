@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint
+from eulerplateau.errors import SpecError
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.mesh import Shape
@@ -88,7 +89,12 @@ def equilibrium(point: BranchPoint) -> Equilibrium:
 def family_near(
     problem: Problem, shape: Shape, parameter: str = "load", load: float = 0.0
 ) -> tuple[FilmFamily, FloatArray]:
-    """Return the family good near a shape, and the shape's loop in its coordinates."""
+    """Return the family good near a shape, and the shape's loop in its coordinates.
+
+    Raises SpecError for a loop with a diameter, whose contacts no branch knows.
+    """
+    if problem.loop.diameter is not None:
+        raise SpecError("diameter", "branches know no contact; solve and sweep do")
     film = problem.film.of_loop(problem.film.prepared(shape))
     return FilmFamily(problem, film, parameter, load), film.project(shape.x_loop)
 

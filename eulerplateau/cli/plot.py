@@ -8,7 +8,7 @@ import click
 
 from eulerplateau.cli.options import writes_to
 
-_WHAT = ("diagram", "energy", "curvature", "eigenvalue", "onset")
+_WHAT = ("diagram", "energy", "curvature", "eigenvalue", "contact", "onset")
 _FORMATS = (".png", ".pdf", ".svg")
 
 
@@ -29,8 +29,10 @@ def plot(folders: tuple[Path, ...], out: Path, what: str, quiet: bool) -> None:
     Over the load: `diagram` the loop's total normal curvature, of a cell its perimeter and
     traction, with the shapes; `energy`; `curvature`, the film's total Gauss curvature, of a
     cell the least curvature half-way along its sides; `eigenvalue`, the smallest one of the
-    second variation. `onset`, of films only, fits the exponents with which a film leaves
-    its plane: it needs a dozen loads within 2 % above, as runs/onset.toml has them.
+    second variation; `contact`, of a loop with a diameter, the force with which strands
+    push and the angle at which they cross. `onset`, of films only, fits the exponents with
+    which a film leaves its plane: it needs a dozen loads within 2 % above, as
+    runs/onset.toml has them.
     """
     from eulerplateau.errors import OutputError
     from eulerplateau.pictures import check_plot, draw_comparison, fit_onset

@@ -34,7 +34,7 @@ from .motions import (
 from .rod import Rod as Rod
 from .strands import Strands as Strands, strands_of as strands_of
 from .stretches import ALONG as ALONG, evenly as evenly
-from .term import LEAST as LEAST, OwnTerm as OwnTerm, Term as Term
+from .term import LEAST as LEAST, MOST as MOST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,
     LengthMetric as LengthMetric,

@@ -33,14 +33,17 @@ class Loop:
 
     @property
     def parameters(self) -> Mapping[str, float]:
-        """What can be varied of these terms, by names: their values."""
+        """What can be varied of it: its thickness, and what its terms name; the values."""
         own = (term.parameters.items() for term in self.terms.values())
-        return {name: value for pairs in own for name, value in pairs}
+        found = {name: value for pairs in own for name, value in pairs}
+        return found if self.diameter is None else {"diameter": self.diameter, **found}
 
     def with_value(self, parameter: str, value: float) -> Loop:
-        """Return the loop at another value of a parameter of its terms."""
+        """Return the loop at another value of one of its parameters."""
         # Copied with what is known of its lengths.
         made, terms = copy(self), self.terms.items()
+        if parameter == "diameter":
+            object.__setattr__(made, "diameter", value)
         own = {name: term.with_value(parameter, value) for name, term in terms}
         object.__setattr__(made, "terms", own)
         return made

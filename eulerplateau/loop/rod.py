@@ -8,9 +8,7 @@ from math import isfinite
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.loop.loop import Loop
-
-# The largest diameter, in units of the loop's length.
-THICKEST = 0.1
+from eulerplateau.loop.term import MOST
 
 
 @dataclass(frozen=True)
@@ -57,8 +55,9 @@ class Rod:
         return replace(bare, terms=terms)
 
     def _refuse_wrong_diameter(self) -> None:
-        if self.diameter is not None and not 0.0 < self.diameter <= THICKEST:
-            problem = f"found {self.diameter:g}; should be above 0, up to {THICKEST:g}"
+        most = MOST["diameter"]
+        if self.diameter is not None and not 0.0 < self.diameter <= most:
+            problem = f"found {self.diameter:g}; should be above 0, up to {most:g}"
             raise SpecError("diameter", problem)
 
     def _refuse_without_twist(self) -> None:

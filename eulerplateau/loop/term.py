@@ -10,8 +10,16 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 
-# What a branch of films may vary: values down to these, included, do not exist.
-LEAST = {"load": 0.0, "link": -math.inf, "twist_ratio": 0.0, "rest_curvature": 0.0}
+# What a run or a branch of films may vary: values down to these, included, do not exist.
+LEAST = {
+    "load": 0.0,
+    "link": -math.inf,
+    "twist_ratio": 0.0,
+    "rest_curvature": 0.0,
+    "diameter": 0.0,
+}
+# And values beyond these: a thicker loop has hardly room for its own turns.
+MOST = {"diameter": 0.1}
 
 
 class Term(ABC):

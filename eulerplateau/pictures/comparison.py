@@ -35,12 +35,16 @@ _COLUMN, _EXTRA, _PANEL = 3.4, 0.6, 3.0
 
 
 def check_plot(runs: Sequence[Run], what: str) -> None:
-    """Raise SpecError if `what`, one of WHAT, is not asked of runs of this kind."""
+    """Raise SpecError if `what`, one of WHAT, is not asked of such runs."""
     kind = runs[0].kind
     pictures = pictures_of(kind)
     if what not in pictures.plots and not (what == "onset" and pictures.has_onset):
         known = ", ".join(pictures.plots)
         raise SpecError("--what", f"a {kind.name} has no {what}: ask for {known}")
+    needed = pictures.needs.get(what)
+    if needed is not None and not any(needed in run.kind.columns for run in runs):
+        problem = f"{what} needs the column {needed}: a run with loop.diameter has it"
+        raise SpecError("--what", problem)
 
 
 def draw_comparison(runs: Sequence[Run], what: str, path: Path) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import pi
 from pathlib import Path
@@ -34,6 +34,11 @@ def _over_disk(row: Row) -> float:
     return row.energy / (row.sigma_hat / (4 * pi) + 4 * pi**2)
 
 
+def _said(column: str) -> Callable[[Row], float | None]:
+    """Return the quantity of a column that only rows of thick loops have."""
+    return lambda row: getattr(row, column, None)
+
+
 _PLOTS: dict[str, tuple[Panel, ...]] = {
     "diagram": (panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),),
     "energy": (
@@ -47,6 +52,10 @@ _PLOTS: dict[str, tuple[Panel, ...]] = {
             lambda row: row.lowest_eigenvalue,
             logarithmic=True,
         ),
+    ),
+    "contact": (
+        panel(r"contact force $F\,L^2/\alpha$", _said("contact_force")),
+        panel("crossing angle (deg)", _said("crossing_angle")),
     ),
 }
 
@@ -112,6 +121,7 @@ FILM = KindPictures(
     band="not planar",
     branches=_branches,
     plots=_PLOTS,
+    needs={"contact": "contact_force"},
     has_onset=True,
     numbered=lambda row: float(row.abs_kappa_n),
     flat=is_planar,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +60,7 @@ class KindPictures:
     portraits : the portraits of shapes, from each run's files
     state : of a row, its state in a word; empty if the shape says it
     stage : how shapes are seen in renders and in the gallery
+    needs : by the names of plots, a column without which there is nothing to be seen
     """
 
     sweep: tuple[Panel, ...]
@@ -74,3 +75,4 @@ class KindPictures:
     portraits: Callable[[Sequence[Sequence[Path]]], Portraits]
     state: Callable[[Any], str]
     stage: Stage
+    needs: Mapping[str, str] = field(default_factory=dict)

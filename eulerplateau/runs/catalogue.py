@@ -39,6 +39,7 @@ def run_catalogue(
     if spec.loop.twist_ratio is not None:
         what = "should be absent: catalogues take mirror images for the same"
         raise SpecError("loop.twist_ratio", what)
+    spec.loop.refuse_thickness("catalogues")
     disk = make_mesh(spec)
     problem = make_problem(spec, disk)
     settings = spec.catalogue

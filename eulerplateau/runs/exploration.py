@@ -92,9 +92,10 @@ def run_branches(
     the window.
     """
     started = time.perf_counter()
-    disk = make_mesh(spec)
     if spec.film.plane:
         raise SpecError("film.plane", "should be false: branches leave the plane")
+    spec.loop.refuse_thickness("branches")
+    disk = make_mesh(spec)
     problem = make_problem(spec, disk)
     window, held, quantity = spec.window(), spec.held, spec.column(spec.explored)
     varied, rod = in_problem(spec.explored), (spec.twist_ratio, spec.loop.rest_curvature)

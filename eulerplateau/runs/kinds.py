@@ -7,20 +7,24 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from eulerplateau.film import FILM_LOADS, SPRING_LOAD
+from eulerplateau.runs.own_columns import (
+    OfContact,
+    OfDiameter,
+    OfLength,
+    OfRatio,
+    OfSurfaceTension,
+    with_own,
+)
 from eulerplateau.runs.parameters import BENCH, own_parameter
 from eulerplateau.runs.rows import (
     BranchRow,
     CurvedRodBranchRow,
     CurvedRodRow,
     LoadName,
-    OfLength,
-    OfRatio,
-    OfSurfaceTension,
     Row,
     TwistBranchRow,
     TwistRow,
     columns,
-    with_own,
 )
 from eulerplateau.runs.states import FILM_STATES, States
 
@@ -82,6 +86,7 @@ CURVED = replace(FILM, row=CurvedRodRow, branch_row=CurvedRodBranchRow)
 # Columns for what is varied, where a loop's rows have none.
 _OWN: dict[str, Any] = {
     "twist_ratio": OfRatio,
+    "diameter": OfDiameter,
     BENCH["length"].column: OfLength,
     BENCH["surface_tension"].column: OfSurfaceTension,
 }
@@ -90,7 +95,9 @@ _OWN: dict[str, Any] = {
 _OF_BENCH = {own.column for own in BENCH.values()}
 
 
-def film_kind(twist_ratio: Any, rest_curvature: Any, varied: Any = "load") -> Kind:
+def film_kind(
+    twist_ratio: Any, rest_curvature: Any, varied: Any = "load", diameter: Any = None
+) -> Kind:
     """Return the kind of a film's run, by the rod of its loop and what its rows vary.
 
     What varies a number of the loop is not to be shown over the load; what varies a length
@@ -99,12 +106,18 @@ def film_kind(twist_ratio: Any, rest_curvature: Any, varied: Any = "load") -> Ki
     kind = FILM
     if twist_ratio is not None:
         kind = CURVED if rest_curvature else WITH_TWIST
+    if diameter is not None:
+        kind = _with_own(OfContact, kind)
     own = own_parameter(str(varied))
     if own is None:
         return kind
     if own.column in _OWN:
-        rows: tuple[Any, Any] = kind.row, kind.branch_row
-        row, branch_row = (with_own(_OWN[own.column], plain) for plain in rows)
-        kind = replace(kind, row=row, branch_row=branch_row)
+        kind = _with_own(_OWN[own.column], kind)
     common = kind.common_load if own.column in _OF_BENCH else None
     return replace(kind, load=lambda about: own, common_load=common)
+
+
+def _with_own(own: Any, kind: Kind) -> Kind:
+    rows: tuple[Any, Any] = kind.row, kind.branch_row
+    row, branch_row = (with_own(own, plain) for plain in rows)
+    return replace(kind, row=row, branch_row=branch_row)

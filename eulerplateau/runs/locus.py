@@ -50,6 +50,7 @@ def run_locus(
     ConflictError if another curve lies there.
     """
     started = time.perf_counter()
+    spec.loop.refuse_thickness("curves of special points")
     problem, known, load = _start(spec, asked)
     varied = spec.explored, asked.second
     names = _name(spec, varied[0]), _name(spec, varied[1])

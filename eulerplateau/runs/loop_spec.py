@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from eulerplateau.errors import SpecError
+from eulerplateau.loop import MOST
 from eulerplateau.runs.bench_spec import Length
 from eulerplateau.settings import Settings
 
@@ -15,7 +16,8 @@ class LoopSettings(Settings):
     """The loop's bending modulus and length: they turn a film's constant into a load.
 
     And its twist: without `twist_ratio` that escapes, and costs nothing. And what it was
-    before its ends were welded, which is no matter to a rod whose twist escapes.
+    before its ends were welded, which is no matter to a rod whose twist escapes. And its
+    thickness: without `diameter` it has none, and its strands pass through each other.
 
     Attributes
     ----------
@@ -30,6 +32,8 @@ class LoopSettings(Settings):
         Turns that the rod was given before its ends were welded; by default none.
     rest_curvature : float
         The rod's natural curvature over 2 pi / length, that of a circle; by default none.
+    diameter : float
+        The rod's thickness over its length; its strands touch and pass through nothing.
     """
 
     alpha: float = Field(default=1.0, gt=0)
@@ -37,6 +41,7 @@ class LoopSettings(Settings):
     twist_ratio: Annotated[float, Field(gt=0)] | Literal["rod"] | None = None
     link: float | None = None
     rest_curvature: float | None = Field(default=None, ge=0)
+    diameter: float | None = Field(default=None, gt=0, le=MOST["diameter"])
 
     @model_validator(mode="after")
     def _a_rod_needs_a_rigidity(self) -> LoopSettings:
@@ -46,3 +51,9 @@ class LoopSettings(Settings):
                 if getattr(self, name) is not None:
                     raise SpecError(f"loop.{name}", lost)
         return self
+
+    def refuse_thickness(self, who: str) -> None:
+        """Raise SpecError where the loop has a diameter and `who` know no contact."""
+        if self.diameter is not None:
+            problem = f"should be absent: {who} know no contact; a sweep by newton does"
+            raise SpecError("loop.diameter", problem)

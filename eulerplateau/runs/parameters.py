@@ -14,13 +14,20 @@ from typing import Any, Literal
 from eulerplateau.units import LENGTH, SURFACE_TENSION, Measure
 
 Parameter = Literal[
-    "load", "link", "twist_ratio", "rest_curvature", "length", "surface_tension"
+    "load",
+    "link",
+    "twist_ratio",
+    "rest_curvature",
+    "diameter",
+    "length",
+    "surface_tension",
 ]
 # The key of the loop without which there is nothing to vary.
 NEEDED = {
     "link": "twist_ratio",
     "twist_ratio": "twist_ratio",
     "rest_curvature": "rest_curvature",
+    "diameter": "diameter",
 }
 
 
@@ -88,6 +95,14 @@ LOOP_PARAMETERS = {
         "q",
         "natural curvature over 2 pi / L",
         _energy_by_curvature,
+    ),
+    "diameter": LoopParameter(
+        "diameter",
+        "d",
+        "d/L",
+        "diameter",
+        # Of one that nothing is known of, as no film was found: a row that failed.
+        lambda row: math.nan if row.contact_force is None else row.contact_force,
     ),
 }
 

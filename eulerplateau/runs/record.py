@@ -203,7 +203,8 @@ def kind_of(about: Mapping[str, Any]) -> Kind:
         return CELL
     try:
         loop, varied = about["spec"]["loop"], about.get("varied", "load")
-        return film_kind(loop.get("twist_ratio"), loop.get("rest_curvature"), varied)
+        rod = loop.get("twist_ratio"), loop.get("rest_curvature")
+        return film_kind(*rod, varied, loop.get("diameter"))
     except (AttributeError, KeyError, TypeError):
         return FILM
 

@@ -195,12 +195,18 @@ class Recorder(Generic[R]):
         """
         measures, curvatures = self.measurer.measured(found.shape)
         own, fields = problem.said_of_loop(found.shape)
+        state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
+        if problem.loop.diameter is not None:
+            from eulerplateau.runs import contact_record as told
+
+            own |= told.contact_cells(found)
+            fields["contact_force"] = told.contact_forces(problem, found)
+            state |= told.contact_data(problem, found)
         row_type, parameters = self.opening.row_type, problem.loop.parameters.items()
         own |= {name: v for name, v in parameters if name in columns(row_type)}
         cells |= {**asdict(measures), **own, "quantity": self.opening.quantity}
         row = make_row(len(self.run.rows), found, problem.film.load, row_type, cells)
         disk, rest = self.measurer.disk_of(found.shape), problem.disk.digest
-        state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
         known = {**modes, **fields}, rest, state, curvatures
         self.run.folder.record(row, disk, found.shape.x, *known)
         self.run.rows.append(row)

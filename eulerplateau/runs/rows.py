@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from functools import cache
 from typing import Any, Protocol
 
 from eulerplateau.film import LOADS, SPRING_LOAD
@@ -217,49 +216,6 @@ class CurvedRodRow(_OfCurvedRod, Row):
 @dataclass(frozen=True)
 class CurvedRodBranchRow(_OfCurvedRod, BranchRow):
     """One point of a branch of a loop that is curved by nature."""
-
-
-@dataclass(frozen=True)
-class OfRatio:
-    """What a row says besides where the rigidity to twist is varied.
-
-    Attributes
-    ----------
-    twist_ratio : float, C / B
-    """
-
-    twist_ratio: float
-
-
-@dataclass(frozen=True)
-class OfLength:
-    """What a row says besides where the loop's length is varied.
-
-    Attributes
-    ----------
-    length_m : float, in m
-    """
-
-    length_m: float
-
-
-@dataclass(frozen=True)
-class OfSurfaceTension:
-    """What a row says besides where the liquid's surface tension is varied.
-
-    Attributes
-    ----------
-    surface_tension_N_per_m : float, in N/m
-    """
-
-    surface_tension_N_per_m: float  # noqa: N815 - the column's name
-
-
-@cache
-def with_own(own: Any, row: Any) -> Any:
-    """Return the type of rows with the columns of `own` after those of `row`."""
-    made = type(f"{own.__name__}{row.__name__}", (own, row), {"__doc__": row.__doc__})
-    return dataclass(frozen=True)(made)
 
 
 @dataclass(frozen=True)

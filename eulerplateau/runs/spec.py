@@ -148,6 +148,17 @@ class RunSpec(Settings):
         return self
 
     @model_validator(mode="after")
+    def _contact_is_newtons(self) -> RunSpec:
+        if self.loop.diameter is None:
+            return self
+        if self.solver.name != "newton":
+            problem = f"found {self.solver.name!r}; should be 'newton' with loop.diameter"
+            raise SpecError("solver.name", problem)
+        if self.output.modes:
+            raise SpecError("output.modes", "should be 0 with loop.diameter")
+        return self
+
+    @model_validator(mode="after")
     def _what_is_varied_is_there(self) -> RunSpec:
         for key, section in ("sweep", self.sweep), ("branches", self.branches):
             needed = NEEDED.get(section.parameter or "load")

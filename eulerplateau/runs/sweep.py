@@ -130,7 +130,8 @@ def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictErro
 def _opening(spec: RunSpec, overwrite: bool, resume: bool) -> Opening[Row]:
     """Return how the folder of a sweep is opened."""
     quantity, loads = spec.column(spec.sweep.varied), spec.values() if resume else None
-    row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature, quantity).row
+    loop = spec.loop
+    row_type = film_kind(loop.twist_ratio, loop.rest_curvature, quantity, loop.diameter).row
     return Opening("sweep", row_type, quantity, overwrite, loads=loads)
 
 

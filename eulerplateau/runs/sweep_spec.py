@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+import numpy as np
 from pydantic import (
     Field,
     ModelWrapValidatorHandler,
@@ -13,7 +14,7 @@ from pydantic import (
 )
 
 from eulerplateau.errors import SpecError
-from eulerplateau.loop import LEAST
+from eulerplateau.loop import LEAST, MOST
 from eulerplateau.runs.bench_spec import kind_of, values_in_si
 from eulerplateau.runs.loads import Loads, Values, in_order
 from eulerplateau.runs.parameters import BENCH, Parameter, in_problem
@@ -29,7 +30,8 @@ class SweepSettings(Settings):
     ----------
     loads : list of numbers, ranges {start, stop, step} and refinements
         {onset, nearest, farthest, count}; sorted, each value once.
-    parameter : "load", "link", "twist_ratio", "rest_curvature"; "length", "surface_tension"
+    parameter : "load", "link", "twist_ratio", "rest_curvature", "diameter"; "length",
+        "surface_tension"
         What is varied; by default the load. A length or a surface tension sets the load
         with [rod] and the other of the two; another parameter is varied at the load
         film.load, or at that which [rod] and both of them set.
@@ -189,8 +191,10 @@ _ENDS = {True: ("load_min", "load_max"), False: ("low", "high")}
 
 def check_positive(key: str, varied: str, values: list[float]) -> None:
     """Raise SpecError for values of a parameter that do not exist."""
-    least = LEAST[in_problem(varied)]
+    name = in_problem(varied)
+    least, most = LEAST[name], MOST.get(name, np.inf)
     for value in values:
-        if value <= least:
-            problem = f"found {value:g}; {varied} should be above {least:g}"
+        if not least < value <= most:
+            bound = f"above {least:g}" if value <= least else f"at most {most:g}"
+            problem = f"found {value:g}; {varied} should be {bound}"
             raise SpecError(key, problem)

@@ -20,11 +20,12 @@ from eulerplateau.solvers import Status
 
 _INTEGERS = {
     "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special",
-    "number", "by_starts", "by_deflation", "first_start", "first_guess",
+    "number", "by_starts", "by_deflation", "first_start", "first_guess", "contacts",
 }  # fmt: skip
 _MAY_BE_EMPTY = {
     "n_unstable", "lowest_eigenvalue", "self_intersections", "origin", "special",
-    "first_start", "first_guess",
+    "first_start", "first_guess", "contacts", "contact_force", "smallest_gap",
+    "crossing_angle",
 }  # fmt: skip
 _WORDS = {"symmetry"}
 

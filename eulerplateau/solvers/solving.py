@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
-from eulerplateau.loop import LEAST
+from eulerplateau.loop import LEAST, MOST
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium
 from eulerplateau.solvers.problem import Problem
@@ -100,8 +100,8 @@ def sweep(
     """Yield one equilibrium per load, each started from the last shape.
 
     Or one per value of another `parameter`, "link" or "twist_ratio" of a loop that resists
-    twist, at one `load`. A shape that is not finite is yielded, and not started from. See
-    `solve`.
+    twist, "diameter" of one that has it, at one `load`. A shape that is not finite is
+    yielded, and not started from. See `solve`.
     """
     if parameter == "load":
         if loads is None or values is not None or load is not None:
@@ -153,10 +153,12 @@ def check_values(problem: Problem, parameter: str, values: Iterable[float]) -> l
         found = [float(value) for value in values]
     except (TypeError, ValueError):
         raise SpecError(parameter, "should be numbers") from None
+    most = MOST.get(parameter, np.inf)
     for value in found:
-        if not (np.isfinite(value) and value > LEAST[parameter]):
+        if not (np.isfinite(value) and LEAST[parameter] < value <= most):
             wanted = "finite" if np.isinf(LEAST[parameter]) else "positive"
-            raise SpecError(parameter, f"found {value:g}; should be {wanted}")
+            upper = "" if np.isinf(most) else f", at most {most:g}"
+            raise SpecError(parameter, f"found {value:g}; should be {wanted}{upper}")
     return found
 
 

@@ -13,8 +13,21 @@ from eulerplateau.mesh.disk import Disk
 HEAVY = {"gmsh", "pyvista", "trimesh", "matplotlib", "meshio", "vtkmodules"}
 
 
+# What only a loop with a diameter has a use for.
+CONTACT = {
+    "eulerplateau.loop.strand_kernels",
+    "eulerplateau.runs.contact_record",
+    "eulerplateau.solvers.contact",
+}
+
+
 def loaded_by(*words: object) -> set[str]:
     """Top-level packages that `eulerplateau WORDS` imports."""
+    return {name.partition(".")[0] for name in modules_loaded_by(*words)}
+
+
+def modules_loaded_by(*words: object) -> set[str]:
+    """Modules that `eulerplateau WORDS` imports."""
     result = subprocess.run(
         [sys.executable, "-X", "importtime", "-m", "eulerplateau", *map(str, words)],
         capture_output=True,
@@ -22,7 +35,7 @@ def loaded_by(*words: object) -> set[str]:
         check=True,
     )
     return {
-        line.split("|")[-1].strip().partition(".")[0]
+        line.split("|")[-1].strip()
         for line in result.stderr.splitlines()
         if line.startswith("import time:")
     }
@@ -34,9 +47,14 @@ def test_sweep_on_a_stored_mesh_loads_no_mesher_and_no_plotting_library(
     write_mesh(oval, tmp_path / "oval.vtp")
     spec = tmp_path / "run.toml"
     spec.write_text('[mesh]\nfile = "oval.vtp"\n[sweep]\nloads = [500, 900]\n')
-    loaded = loaded_by("sweep", "--no-pictures", "--quiet", spec)
+    modules = modules_loaded_by("sweep", "--no-pictures", "--quiet", spec)
+    loaded = {name.partition(".")[0] for name in modules}
     assert {"numpy", "scipy", "numba", "eulerplateau"} <= loaded
     assert not loaded & (HEAVY | {"pint"})
+    assert not modules & CONTACT
+    spec.write_text(spec.read_text() + "[loop]\ndiameter = 0.01\n")
+    thick = modules_loaded_by("sweep", "--no-pictures", "--quiet", "--overwrite", spec)
+    assert thick >= CONTACT
 
 
 def test_help_loads_no_numerical_library() -> None:

@@ -21,15 +21,19 @@ from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.folder import RunFolder
-from eulerplateau.runs.record import read_run
-from eulerplateau.runs.rows import (
-    BranchRow,
+from eulerplateau.runs.own_columns import (
+    OfContact,
+    OfDiameter,
     OfLength,
     OfRatio,
     OfSurfaceTension,
+    with_own,
+)
+from eulerplateau.runs.record import read_run
+from eulerplateau.runs.rows import (
+    BranchRow,
     TwistRow,
     columns,
-    with_own,
 )
 from eulerplateau.runs.series_file import shape_name
 from tests.helpers.command import run_here
@@ -170,10 +174,10 @@ def test_columns_the_page_shows_are_those_of_the_table() -> None:
     )
     films, cells = static.read_text().split("cell: [")
     # Of what a row does not have the page says nothing.
-    film_row = TwistRow
-    for own in (OfRatio, OfLength, OfSurfaceTension):
-        film_row = with_own(own, film_row)
-    for text, row in ((films, film_row), (cells, CellRow)):
+    film: Any = TwistRow
+    for own in (OfRatio, OfContact, OfDiameter, OfLength, OfSurfaceTension):
+        film = with_own(own, film)
+    for text, row in ((films, film), (cells, CellRow)):
         keys = {part.split('"')[0] for part in text.split('key: "')[1:]}
         assert keys <= set(columns(row))
         assert len(keys) > 10

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import CurvedRod, Loop, directors
 from eulerplateau.mesh import Shape, read_disk, read_vtp, write_mesh
-from eulerplateau.pictures.marks import read_marks
+from eulerplateau.pictures.wire import read_wire
 from eulerplateau.runs import read_run, run_branches, run_sweep
 from eulerplateau.runs.ensembles import load_ensemble, run_ensemble
 from eulerplateau.runs.rows import COLUMNS
@@ -115,12 +115,12 @@ def test_shapes_say_which_way_the_rod_points_and_renders_mark_it(
     np.testing.assert_allclose(director[loop], expected, atol=1e-12)
     turn = Rotation.from_rotvec([0.3, -0.4, 1.1])
     shape = Shape(2 * turn.apply(stored.points) + [1, 2, 3], stored.triangles, loop)
-    marks = read_marks(run.shape_path(run.rows[0]), shape)
+    marks = read_wire(run.shape_path(run.rows[0]), shape).marks
     assert marks is not None
     np.testing.assert_allclose(marks, turn.apply(director[loop]), atol=1e-9)
     run_sweep(spec(mesh, [300.0]), tmp_path / "bare")
     bare = read_run(tmp_path / "bare")
-    assert read_marks(bare.shape_path(bare.rows[0]), shape) is None
+    assert read_wire(bare.shape_path(bare.rows[0]), shape).marks is None
 
 
 CURVED = {"twist_ratio": 0.75, "link": 0.3, "rest_curvature": 0.5}

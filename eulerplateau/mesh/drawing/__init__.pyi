@@ -13,6 +13,7 @@ from .film import (
 from .picture import Picture as Picture, check_drawing as check_drawing
 from .view import (
     ASPECT as ASPECT,
+    LOOP_RADIUS as LOOP_RADIUS,
     UP as UP,
     View as View,
     common_view as common_view,

@@ -55,8 +55,12 @@ def film_plotter(shape: Shape, window: bool, options: Mapping[str, Any]) -> Any:
     return plotter
 
 
-def loop_tube(x_loop: FloatArray, colours: Mapping[str, NDArray[Any]] | None = None) -> Any:
-    """Return the tube (PolyData) round a closed loop (n_b, 3), of radius LOOP_RADIUS.
+def loop_tube(
+    x_loop: FloatArray,
+    colours: Mapping[str, NDArray[Any]] | None = None,
+    radius: float = LOOP_RADIUS,
+) -> Any:
+    """Return the tube (PolyData) of a radius round a closed loop (n_b, 3).
 
     `colours` are values (n_b,) or (n_b, 3) on the loop, by name.
     """
@@ -68,10 +72,10 @@ def loop_tube(x_loop: FloatArray, colours: Mapping[str, NDArray[Any]] | None = N
     wire = pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
     for name, values in (colours or {}).items():
         wire[name] = values[around]
-    return wire.tube(radius=LOOP_RADIUS, n_sides=24)
+    return wire.tube(radius=radius, n_sides=24)
 
 
-def loop_stripe(x_loop: FloatArray, across: FloatArray) -> Any:
+def loop_stripe(x_loop: FloatArray, across: FloatArray, radius: float = LOOP_RADIUS) -> Any:
     """Return a stripe (PolyData) along the tube of `loop_tube`, from the first edge on.
 
     It lies where directions (n_b, 3) across the edges point. It is open: where the rod was
@@ -79,9 +83,9 @@ def loop_stripe(x_loop: FloatArray, across: FloatArray) -> Any:
     """
     pyvista = load_pyvista()
     middles = 0.5 * (x_loop + np.roll(x_loop, -1, axis=0))
-    points = middles + 0.8 * LOOP_RADIUS * across
+    points = middles + 0.8 * radius * across
     line = pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
-    return line.tube(radius=0.4 * LOOP_RADIUS, n_sides=12)
+    return line.tube(radius=0.4 * radius, n_sides=12)
 
 
 def point_camera(plotter: Any, view: View) -> None:

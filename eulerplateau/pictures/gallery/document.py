@@ -7,6 +7,7 @@ import html
 import json
 import math
 import re
+from collections.abc import Sequence
 from importlib.resources import files
 from typing import Any
 
@@ -15,8 +16,8 @@ from numpy.typing import NDArray
 
 from eulerplateau.mesh import Shape
 from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
-from eulerplateau.pictures.marks import read_marks
 from eulerplateau.pictures.of_run import pictures_of
+from eulerplateau.pictures.wire import Wire, read_wire
 from eulerplateau.runs import Series
 
 # Beyond what is drawn, and at most 1e-5 L away from it: 16 bits for a loop of length 1.
@@ -61,9 +62,13 @@ def _data(gallery: Gallery) -> dict[str, Any]:
     screen /= np.linalg.norm(screen, axis=0)
     seen = [np.abs(shown.x @ screen).max(axis=(0, 1)) for shown in gallery.exhibits]
     unit = size / _INT16 or 1.0
+    runs = [shown.run for shown in gallery.exhibits]
+    columns = dict.fromkeys(name for run in runs for name in run.kind.columns)
+    columns["special"] = None
+    made = [_run(shown, unit, stage.size, list(columns)) for shown in gallery.exhibits]
     return {
         "kind": first.kind.name,
-        "columns": [*first.kind.columns, "special"],
+        "columns": list(columns),
         "load": first.load.column,
         "loadUnit": first.load.unit,
         "unit": unit,
@@ -71,7 +76,8 @@ def _data(gallery: Gallery) -> dict[str, Any]:
         "eye": stage.eye.tolist(),
         "halfSize": np.max(seen, axis=0).tolist(),
         "meshes": [_mesh(mesh) for mesh in gallery.meshes],
-        "runs": [_run(shown, unit) for shown in gallery.exhibits],
+        "radius": max(max(run["radii"]) for run in made),
+        "runs": made,
     }
 
 
@@ -83,8 +89,10 @@ def _mesh(mesh: Mesh) -> dict[str, Any]:
     }
 
 
-def _run(shown: Exhibit, unit: float) -> dict[str, Any]:
-    run, shapes = shown.run, shown.shapes
+def _run(
+    shown: Exhibit, unit: float, size: float, columns: Sequence[str]
+) -> dict[str, Any]:
+    run, shapes, wires = shown.run, shown.shapes, _wires(shown)
     return {
         "name": run.name,
         "mesh": shown.mesh,
@@ -92,13 +100,11 @@ def _run(shown: Exhibit, unit: float) -> dict[str, Any]:
             [first, _base64(tiles.astype("<u4"))] for first, tiles in shapes.tilings[1:]
         ],
         "shapes": _base64(np.rint(shown.x / unit).astype("<i2")),
-        "marks": _marks(shown),
+        "marks": _marks(wires),
+        "radii": [float(f"{size * wire.radius:.{_DIGITS}g}") for wire in wires],
         "series": [_series(series) for series in run.series],
         "special": run.special,
-        "rows": [
-            [_value(_shown(row, name)) for name in (*run.kind.columns, "special")]
-            for row in run.rows
-        ],
+        "rows": [[_value(_shown(row, name)) for name in columns] for row in run.rows],
     }
 
 
@@ -107,19 +113,24 @@ def _shown(row: Any, name: str) -> Any:
     return row.load if name == row.load_name.column else getattr(row, name, None)
 
 
-def _marks(shown: Exhibit) -> str | None:
+def _wires(shown: Exhibit) -> list[Wire]:
+    """Return the wires of every shape, as it lies on the page."""
+    found = []
+    for place, row in enumerate(shown.run.rows):
+        triangles, loop = shown.shapes.triangles(place), shown.shapes.loop
+        shape = Shape(shown.x[place], triangles, loop)
+        found.append(read_wire(shown.run.shape_path(row), shape))
+    return found
+
+
+def _marks(wires: Sequence[Wire]) -> str | None:
     """Return which way the wire is marked on the edges of every shape's loop, 8 bits each.
 
     None of a run without marks. The positions they belong to are those on the page, turned.
     """
-    drawn = []
-    for place, row in enumerate(shown.run.rows):
-        triangles, loop = shown.shapes.triangles(place), shown.shapes.loop
-        shape = Shape(shown.x[place], triangles, loop)
-        marks = read_marks(shown.run.shape_path(row), shape)
-        if marks is None:
-            return None
-        drawn.append(marks)
+    drawn = [wire.marks for wire in wires if wire.marks is not None]
+    if len(drawn) < len(wires):
+        return None
     return _base64(np.rint(_INT8 * np.stack(drawn)).astype("i1"))
 
 

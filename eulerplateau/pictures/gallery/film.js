@@ -6,14 +6,13 @@ class Film {
   static BACK = "#F0A35E";
   static LOOP = "#2B2B2B";
   static STRIPE = "#F7F7F7";
-  static TUBE = 0.0035; // in loops' lengths
 
   // `eye` points from the film to the camera; at first it sees `halfSize` [across, up], in
-  // the unit in which `size` is the length of a loop.
-  constructor(canvas, { eye, halfSize, size }) {
+  // the unit in which `size` is the length of a loop; no tube is thicker than `radius`.
+  constructor(canvas, { eye, halfSize, size, radius }) {
     const L = Libraries;
     this.halfSize = halfSize;
-    this.tubeRadius = Film.TUBE * size;
+    this.largestRadius = radius;
     this.canvas = canvas;
     this.renderer = new L.WebGLRenderer({ canvas, antialias: true });
     this.renderer.setClearColor("#ffffff");
@@ -46,7 +45,7 @@ class Film {
     new ResizeObserver(() => this.fit()).observe(canvas.parentElement);
   }
 
-  show(mesh, triangles, x, marks) {
+  show(mesh, triangles, x, marks, radius) {
     const L = Libraries;
     if (triangles !== this.triangles) {
       this.triangles = triangles;
@@ -62,25 +61,25 @@ class Film {
     const corners = Array.from(mesh.loop, (v) => new L.Vector3().fromArray(x, 3 * v));
     const wire = new L.CatmullRomCurve3(corners, true);
     this.tube.geometry.dispose();
-    this.tube.geometry = new L.TubeGeometry(wire, 2 * corners.length, this.tubeRadius, 12, true);
-    this.mark(corners, marks);
+    this.tube.geometry = new L.TubeGeometry(wire, 2 * corners.length, radius, 12, true);
+    this.mark(corners, marks, radius);
     this.draw();
   }
 
   // A stripe along the tube where directions across its edges point; open, as the ends of a
   // rod that was turned need not meet where it was welded.
-  mark(corners, marks) {
+  mark(corners, marks, radius) {
     const L = Libraries;
     this.stripe.visible = marks !== null;
     if (!marks) return;
     const points = corners.map((corner, edge) => {
-      const across = new L.Vector3().fromArray(marks, 3 * edge).setLength(0.8 * this.tubeRadius);
+      const across = new L.Vector3().fromArray(marks, 3 * edge).setLength(0.8 * radius);
       const next = corners[(edge + 1) % corners.length];
       return corner.clone().lerp(next, 0.5).add(across);
     });
     const line = new L.CatmullRomCurve3(points);
     this.stripe.geometry.dispose();
-    this.stripe.geometry = new L.TubeGeometry(line, 4 * points.length, 0.4 * this.tubeRadius, 8);
+    this.stripe.geometry = new L.TubeGeometry(line, 4 * points.length, 0.4 * radius, 8);
   }
 
   firstView() {
@@ -93,8 +92,8 @@ class Film {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     const half = 1.05 * Math.max(
-      (this.halfSize[0] + this.tubeRadius) / width,
-      (this.halfSize[1] + this.tubeRadius) / height);
+      (this.halfSize[0] + this.largestRadius) / width,
+      (this.halfSize[1] + this.largestRadius) / height);
     Object.assign(this.camera, {
       left: -half * width, right: half * width, top: half * height, bottom: -half * height,
     });

@@ -4,7 +4,7 @@ const gallery = readGallery(document.getElementById("data"));
 const all = curves(gallery);
 const find = (id) => document.getElementById(id);
 const several = gallery.runs.length > 1;
-// Of a loop that resists twist there are more.
+// Of a loop that resists twist, or has a thickness, there are more.
 const quantities = QUANTITIES[gallery.kind]
   .filter(({ key }) => gallery.columns.includes(key))
   .map((quantity) => quantity.key === gallery.load && gallery.loadUnit
@@ -22,7 +22,7 @@ function show(curve, place) {
   });
   film?.show(
     curve.run.mesh, triangles(curve.run, place), positions(gallery, curve.run, place),
-    marks(curve.run, place));
+    marks(curve.run, place), curve.run.radii[place]);
   diagram.mark(row);
   const value = [text(row[load.key], 7), load.unit].filter(Boolean).join(" ");
   find("headline").textContent = `${curve.name}: ${load.symbol} = ${value}`;

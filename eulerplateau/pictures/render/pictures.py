@@ -11,7 +11,6 @@ from eulerplateau.errors import OutputError
 from eulerplateau.mesh import Shape, write_whole
 from eulerplateau.mesh.drawing import View, turning_views
 from eulerplateau.pictures.kinds import Stage
-from eulerplateau.pictures.marks import read_marks
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.render.choice import chosen_steps
 from eulerplateau.pictures.render.colours import (
@@ -25,6 +24,7 @@ from eulerplateau.pictures.render.colours import (
 from eulerplateau.pictures.render.fields import read_field
 from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
+from eulerplateau.pictures.wire import read_wire
 from eulerplateau.runs import Run, read_run
 
 _WIDTH, _FRAME_WIDTH = 1200, 640
@@ -126,9 +126,9 @@ class RunPictures:
     def _picture(self, scene: Scene, place: int, shape: Shape, view: View) -> Pixels:
         values = self.fields.get(place)
         film = coloured_film(shape, view.eye, self.colour, values, self.scale)
-        marks = read_marks(self.run.shape_path(self.run.rows[place]), shape)
+        wire = read_wire(self.run.shape_path(self.run.rows[place]), shape)
         colours = loop_colours(shape, values, self.scale)
-        pixels = scene.pixels(shape, film, colours, marks, view)
+        pixels = scene.pixels(shape, film, colours, wire, view)
         return captioned(pixels, caption(self.run.rows[place]), self.scale)
 
     def _write(self, name: str, suffix: str, content: bytes) -> None:

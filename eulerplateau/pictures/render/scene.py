@@ -21,6 +21,7 @@ from eulerplateau.mesh.drawing import (
 )
 from eulerplateau.pictures.figure import load_matplotlib
 from eulerplateau.pictures.render.colours import PaintedFilm
+from eulerplateau.pictures.wire import Wire
 
 _STRIPE = "#F7F7F7"
 
@@ -60,22 +61,23 @@ class Scene:
         shape: Shape,
         film: PaintedFilm,
         loop_rgb: FloatArray,
-        marks: FloatArray | None,
+        wire: Wire,
         view: View,
     ) -> Pixels:
         """Return an image (height, width, 3) of the film and its loop (n_b, 3 colours).
 
-        With `marks`, directions (n_b, 3) across its edges, a stripe runs along it there.
+        Where the wire has marks a stripe runs along it.
         """
         plotter = self._plotter
         # Or each change would be rendered at once.
         plotter.suppress_rendering = True
         plotter.clear_actors()
         plotter.add_mesh(_surface(film), scalars="rgba", rgb=True, lighting=False)
-        tube = loop_tube(shape.x_loop, {"rgb": _bytes(loop_rgb)})
+        tube = loop_tube(shape.x_loop, {"rgb": _bytes(loop_rgb)}, wire.radius)
         plotter.add_mesh(tube, scalars="rgb", rgb=True, smooth_shading=True, **GLOSS)
-        if marks is not None:
-            plotter.add_mesh(loop_stripe(shape.x_loop, marks), color=_STRIPE, **GLOSS)
+        if wire.marks is not None:
+            stripe = loop_stripe(shape.x_loop, wire.marks, wire.radius)
+            plotter.add_mesh(stripe, color=_STRIPE, **GLOSS)
         point_camera(plotter, view)
         plotter.suppress_rendering = False
         plotter.render()

@@ -5,9 +5,9 @@ from __future__ import annotations
 import difflib
 import json
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, cast, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, cast, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
@@ -191,6 +191,28 @@ def _models(annotation: Any) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     return [model for part in get_args(annotation) for model in _models(part)]
+
+
+def choices(model: type[BaseModel], prefix: str = "") -> dict[str, tuple[str, ...]]:
+    """Return the dotted keys of a specification, and of each the words it may be."""
+    found: dict[str, tuple[str, ...]] = {}
+    for name, field in model.model_fields.items():
+        sections = _models(field.annotation)
+        for section in sections:
+            found |= choices(section, f"{prefix}{name}.")
+        if not sections:
+            found[f"{prefix}{name}"] = tuple(_words(field.annotation))
+    return found
+
+
+def _words(annotation: Any) -> Iterator[str]:
+    if get_origin(annotation) is Literal:
+        yield from (word for word in get_args(annotation) if isinstance(word, str))
+    elif annotation is bool:
+        yield from ("true", "false")
+    else:
+        for part in get_args(annotation):
+            yield from _words(part)
 
 
 def _has_tag(model: type[BaseModel], tag: str) -> bool:

@@ -38,4 +38,5 @@ from .special import (
     FOLD as FOLD,
     SpecialPoint as SpecialPoint,
     branches_from as branches_from,
+    multiple as multiple,
 )

@@ -95,7 +95,15 @@ class SpecialPoint:
         """Return one line: the kind, the parameter with its error, what breaks."""
         broken = ", ".join(self.breaks) or "nothing"
         value = f"{self.point.value:.8g} +- {self.error:.1g}"
-        return f"<SpecialPoint: {self.kind} at {value}, breaks {broken}>"
+        kind = f"{self.kind}{multiple(self.multiplicity)}"
+        return f"<SpecialPoint: {kind} at {value}, breaks {broken}>"
+
+
+def multiple(multiplicity: int) -> str:
+    """Return what is said behind an event of how many eigenvalues vanish at it."""
+    if multiplicity == 1:
+        return ""
+    return " (double)" if multiplicity == 2 else f" ({multiplicity}-fold)"
 
 
 def special_points(

@@ -6,7 +6,8 @@ operation, together with a shift or reversal of the vertex numbers, brings it ba
 itself. An unstructured mesh is symmetric only nearly (its plane apart), hence a tolerance.
 
 A loop in the plane (n, 2) counts as flat in space. Where two extents are equal, as those of
-a regular triangle are, the axes in their plane are any, and what is said of them is too.
+a regular triangle are, the axes in their plane are any, and nothing is said of them. A
+round loop has all turns besides, of which every mode breaks some.
 """
 
 from __future__ import annotations
@@ -30,8 +31,13 @@ OPERATIONS = {
 # Those that a loop of one handedness can have.
 _TURNS = {name for name, signs in OPERATIONS.items() if np.prod(signs) > 0}
 
+# What a circle has besides, about the axis across its plane.
+ROUND = "any turn about short axis"
+
 # Root-mean-square mismatch, in units of L: half an edge of the paper's mesh.
 _SAME_SHAPE = 7e-3
+# Extents (root mean square, in units of L) that are as equal as meshes leave them.
+_SAME_EXTENT = 1e-3
 
 
 @dataclass(frozen=True)
@@ -41,6 +47,7 @@ class ModeSymmetry:
     Attributes
     ----------
     breaks, keeps : names in OPERATIONS under which the mode is odd, or even
+        Of a round loop ROUND is broken too.
     transverse : float
         Fraction of the mode's square norm along the loop's shortest axis.
     """
@@ -61,15 +68,32 @@ def mode_symmetry(
     moved = _in_space(mode) @ axes.T
     breaks: list[str] = []
     keeps: list[str] = []
+    alike = _alike(shape)
     for name, numbering in _own_operations(shape, _SAME_SHAPE).items():
-        if not (mirrors or name in _TURNS):
+        told = len(set(np.array(OPERATIONS[name])[alike])) < 2
+        if not (told and (mirrors or name in _TURNS)):
             continue
         turned = (moved * np.array(OPERATIONS[name]))[numbering]
         parity = float(np.sum(turned * moved) / np.sum(moved * moved))
         if abs(parity) > 0.5:
             (keeps if parity > 0 else breaks).append(name)
+    if _is_round(shape):
+        breaks.append(ROUND)
     transverse = float(np.sum(moved[:, 2] ** 2) / np.sum(moved**2))
     return ModeSymmetry(tuple(breaks), tuple(keeps), transverse)
+
+
+def _alike(shape: FloatArray) -> list[int]:
+    """Return which of the axes of a loop along them (n, 3) have the extent of another."""
+    extents = np.sqrt(np.mean(shape**2, axis=0))
+    pairs = [(i, i + 1) for i in (0, 1) if extents[i] - extents[i + 1] < _SAME_EXTENT]
+    return sorted({axis for pair in pairs for axis in pair})
+
+
+def _is_round(shape: FloatArray) -> bool:
+    """Return whether a loop along its axes (n, 3) is a circle."""
+    radii = np.linalg.norm(shape[:, :2], axis=1)
+    return float(np.hypot(radii.std(), np.sqrt(np.mean(shape[:, 2] ** 2)))) < _SAME_EXTENT
 
 
 def loop_symmetries(x_loop: FloatArray, within: float) -> tuple[str, ...]:

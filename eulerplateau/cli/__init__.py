@@ -38,7 +38,7 @@ folder holds another run; 130, 143, 129 interrupted by SIGINT, SIGTERM,
 SIGHUP."""
 
 
-@click.group(epilog=EXIT_CODES)
+@click.group(epilog=EXIT_CODES, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="eulerplateau")
 def commands() -> None:
     """Shapes of elastic loops spanned by soap films: the Euler-Plateau problem."""

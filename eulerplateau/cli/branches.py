@@ -9,6 +9,7 @@ import click
 
 from eulerplateau.cli.batch import GOES_ON, OVERWRITE, QUIET, before, begin
 from eulerplateau.cli.compiling import telling_of_compiling
+from eulerplateau.cli.options import writes_to
 from eulerplateau.cli.overrides import load_single, setting, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -18,10 +19,8 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("spec", metavar="RUN.toml", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="The folder to write to. Default: beside RUN.toml, with its name, what is set and "
+@writes_to(
+    "The folder to write to. Default: beside RUN.toml, with its name, what is set and "
     "-branches.",
 )
 @setting("branches.special_points=3")
@@ -91,10 +90,13 @@ def _explore(run: RunSpec, folder: Path, quiet: bool, overwrite: bool) -> Explor
 
 
 def _report(result: Exploration, drawn: list[str]) -> None:
+    from eulerplateau.branches import multiple
+
     load = result.rows[0].load_name
     for point in result.special:
+        times = multiple(int(point["multiplicity"]))
         click.echo(
-            f"{point['kind']} {point['number']} at {load.text} = "
+            f"{point['kind']} {point['number']}{times} at {load.text} = "
             f"{float(point[load.column]):.8g} +- "
             f"{float(point[f'{load.column}_error']):.1g} on branch {point['branch']}, "
             f"breaks: {point['breaks'] or 'nothing'}"

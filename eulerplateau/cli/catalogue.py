@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eulerplateau.cli.batch import OVERWRITE, QUIET, before, begin
+from eulerplateau.cli.options import writes_to
 from eulerplateau.cli.overrides import load_single, setting, single_values
 
 if TYPE_CHECKING:
@@ -16,10 +17,8 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("spec", metavar="RUN.toml", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="The folder to write to. Default: beside RUN.toml, with its name, what is set and "
+@writes_to(
+    "The folder to write to. Default: beside RUN.toml, with its name, what is set and "
     "-catalogue.",
 )
 @setting("catalogue.starts=50")

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from eulerplateau.cli.options import writes_to
+
 if TYPE_CHECKING:
     from eulerplateau.cli.area_table import AreaTable
     from eulerplateau.exact.cell import AreaFit, Estimate
@@ -33,10 +35,8 @@ _PARAMETERS = ("sigma", "alpha", "rest_radius")
     help="Without errors: the noise is a share of each area, not the same for all.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, in full precision.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Also draw the data and the fit: .png, .pdf or .svg.",
+@writes_to(
+    "Also draw the data and the fit: .png, .pdf or .svg.",
 )
 def fit(
     data: Path,

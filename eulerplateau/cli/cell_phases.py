@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eulerplateau.cli.batch import QUIET
+from eulerplateau.cli.options import writes_to
 from eulerplateau.cli.overrides import load_single, setting, single_values
 
 if TYPE_CHECKING:
@@ -16,12 +17,10 @@ if TYPE_CHECKING:
 
 @click.command("phase-diagram")
 @click.argument("spec", metavar="RUN.toml", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="The folder to write to. Default: beside RUN.toml, with its name and -phases.",
+@writes_to(
+    "The folder to write to. Default: beside RUN.toml, with its name and -phases.",
 )
-@setting("cell.adhesions=4")
+@setting("cell.adhesions=4", "CellRunSpec")
 @click.option("--pictures/--no-pictures", default=True, help="Draw it (default).")
 @QUIET
 def phase_diagram(

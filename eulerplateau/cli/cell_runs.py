@@ -18,6 +18,7 @@ from eulerplateau.cli.batch import (
     begin,
     carried_out,
 )
+from eulerplateau.cli.options import offered_settings, writes_to
 from eulerplateau.cli.overrides import load_single, parse_setting, setting, single_values
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -33,10 +34,8 @@ _PICTURES = click.option(
 @click.argument(
     "specs", metavar="RUN.toml...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="The run folder; for several runs, the folder that holds theirs. "
+@writes_to(
+    "The run folder; for several runs, the folder that holds theirs. "
     "Default: beside RUN.toml, with its name.",
 )
 @click.option(
@@ -44,6 +43,7 @@ _PICTURES = click.option(
     "settings",
     metavar="KEY=VALUE,...",
     multiple=True,
+    shell_complete=offered_settings("CellRunSpec"),
     help="Replace a key of the specification, as in cell.ks_hat=100,120; several values "
     "make several runs, several --set all their combinations.",
 )
@@ -95,12 +95,10 @@ def _swept(
 
 @click.command()
 @click.argument("spec", metavar="RUN.toml", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="The folder to write to. Default: beside RUN.toml, with its name and -branches.",
+@writes_to(
+    "The folder to write to. Default: beside RUN.toml, with its name and -branches.",
 )
-@setting("branches.special_points=3")
+@setting("branches.special_points=3", "CellRunSpec")
 @_PICTURES
 @GOES_ON
 @OVERWRITE
@@ -135,11 +133,14 @@ def branches(
     drawn = ["branches.csv", "special_points.csv", "branches.pvd"]
     drawn += _drawn(folder, pictures, "branches.png")
     if not quiet:
+        from eulerplateau.branches import multiple
+
         for point in result.special:
+            times = multiple(int(point["multiplicity"]))
             name = run.swept.parameter
             value, error = float(point[name]), float(point["error"])
             click.echo(
-                f"{point['kind']} {point['number']} at {name} = {value:.8g} +- "
+                f"{point['kind']} {point['number']}{times} at {name} = {value:.8g} +- "
                 f"{error:.1g} on branch {point['branch']}, breaks: "
                 f"{point['breaks'] or 'nothing'}"
             )

@@ -7,18 +7,17 @@ from pathlib import Path
 
 import click
 
+from eulerplateau.cli.options import writes_to
+
 
 @click.command()
 @click.argument(
     "folders", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(path_type=Path),
+@writes_to(
+    "The table to write: .csv or .parquet.",
     default=Path("table.csv"),
     show_default=True,
-    help="The table to write: .csv or .parquet.",
 )
 @click.option("--quiet", is_flag=True, help="No summary: for batches.")
 def collect(folders: tuple[Path, ...], out: Path, quiet: bool) -> None:

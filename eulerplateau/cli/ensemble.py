@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 from eulerplateau.cli.batch import QUIET
+from eulerplateau.cli.options import writes_to
 
 if TYPE_CHECKING:
     from eulerplateau.runs.ensembles import Case, EnsembleResult, Outcome
@@ -37,10 +38,8 @@ class _Shard(click.ParamType[tuple[int, int]]):
 
 @click.command()
 @click.argument("spec", metavar="ENSEMBLE.toml", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="The folder of all cases. Default: beside ENSEMBLE.toml, with its name.",
+@writes_to(
+    "The folder of all cases. Default: beside ENSEMBLE.toml, with its name.",
 )
 @click.option("--workers", type=int, help="Processes. Default: one for each core.")
 @click.option(

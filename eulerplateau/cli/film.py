@@ -12,6 +12,7 @@ _OPTIONS = {
     "twist_ratio": "--twist-ratio",
     "link": "--link",
     "rest_curvature": "--rest-curvature",
+    "diameter": "--diameter",
 }
 
 
@@ -36,6 +37,11 @@ _OPTIONS = {
     default=0.0,
     help="The rod's natural curvature over 2 pi / L; not with a link.",
 )
+@click.option(
+    "--diameter",
+    type=float,
+    help="The rod's, in L, up to 0.1, of an eight whose strands touch; by default none.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, in full precision.")
 def film(
     sigma_hat: float,
@@ -43,25 +49,23 @@ def film(
     twist_ratio: float,
     link: float,
     rest_curvature: float,
+    diameter: float | None,
     as_json: bool,
 ) -> int:
     """Print the numbers of a film of true area, to ten digits (L = 1, energies in alpha/L).
 
     Starts: the flat disk; the flat film of two lobes; the least twisted film of no link;
-    the flat figure eight, whose pinch the twist opens or presses. Ends with 4 where the
-    film is not resolved, is pinched, or does not exist.
+    the flat figure eight, whose pinch the twist opens or presses, or with a diameter the
+    twisted one, whose strands touch. Ends with 4 where the film is not resolved, is
+    pinched, opens, has more contact than a point, or does not exist.
     """
-    from eulerplateau.branches.conformal import Start, pinched_eight, rod_film
     from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, SpecError
     from eulerplateau.threads import one_thread
 
     rod = sigma_hat, twist_ratio, link, rest_curvature
     try:
         with one_thread():
-            if start == Start.EIGHT.value:
-                numbers = pinched_eight(*rod).numbers()
-            else:
-                numbers = rod_film(Start(start), *rod).numbers()
+            numbers = _numbers(start, rod, diameter)
     except SpecError as error:
         key, problem = error.args
         raise SpecError(_OPTIONS.get(key, key), problem) from None
@@ -72,4 +76,25 @@ def film(
         for name, value in numbers.items():
             shown = f"{value:.15g}" if isinstance(value, float) else value
             click.echo(f"{name:{width}}  {shown}")
+    if "reason" in numbers and as_json:
+        click.echo(numbers["reason"], err=True)
     return 0 if numbers["status"] == "converged" else NOT_CONVERGED_EXIT_CODE
+
+
+def _numbers(
+    start: str, rod: tuple[float, float, float, float], diameter: float | None
+) -> dict[str, float | int | str]:
+    """Return what is said of the film asked for."""
+    from eulerplateau.branches.conformal import Start, pinched_eight, rod_film, thick_eight
+    from eulerplateau.errors import SpecError
+
+    if diameter is None:
+        if start == Start.EIGHT.value:
+            return {**pinched_eight(*rod).numbers()}
+        return rod_film(Start(start), *rod).numbers()
+    if start != Start.EIGHT.value:
+        raise SpecError("diameter", "needs --start eight: no other film touches itself")
+    load, twist_ratio, link, rest_curvature = rod
+    if rest_curvature != 0:
+        raise SpecError("rest_curvature", "should be 0 with a diameter")
+    return thick_eight(load, diameter, twist_ratio, link).numbers()

@@ -6,18 +6,17 @@ from pathlib import Path
 
 import click
 
+from eulerplateau.cli.options import writes_to
+
 
 @click.command()
 @click.argument(
     "folders", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(path_type=Path),
+@writes_to(
+    "The page to write.",
     default=Path("gallery.html"),
     show_default=True,
-    help="The page to write.",
 )
 @click.option("--quiet", is_flag=True, help="No summary: for batches.")
 def gallery(folders: tuple[Path, ...], out: Path, quiet: bool) -> None:

@@ -9,6 +9,7 @@ import click
 
 from eulerplateau.cli.batch import OVERWRITE, QUIET, begin
 from eulerplateau.cli.compiling import telling_of_compiling
+from eulerplateau.cli.options import writes_to
 from eulerplateau.cli.overrides import load_single, setting, single_values
 
 if TYPE_CHECKING:
@@ -44,11 +45,8 @@ _WITH = {
     type=click.Path(path_type=Path),
     help="The folder of the run's branches. Default: where `branches` writes them.",
 )
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(path_type=Path),
-    help="The folder to write to. Default: beside RUN.toml, with its name, -locus and what "
+@writes_to(
+    "The folder to write to. Default: beside RUN.toml, with its name, -locus and what "
     "is asked for.",
 )
 @setting("branches.special_points=3")

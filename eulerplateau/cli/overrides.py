@@ -9,6 +9,8 @@ from typing import Any, TypeVar
 
 import click
 
+from eulerplateau.cli.options import offered_settings
+
 S = TypeVar("S")
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -27,13 +29,14 @@ def parse_setting(text: str) -> tuple[str, list[Any]]:
     return key, values
 
 
-def setting(example: str) -> Callable[[F], F]:
-    """Return the option --set of a command that carries out one run."""
+def setting(example: str, model: str = "RunSpec") -> Callable[[F], F]:
+    """Return the option --set of a command that carries out one run, a `model` of runs."""
     return click.option(
         "--set",
         "settings",
         metavar="KEY=VALUE",
         multiple=True,
+        shell_complete=offered_settings(model),
         help=f"Replace a key of the specification, as in {example}.",
     )
 

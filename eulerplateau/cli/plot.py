@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from eulerplateau.cli.options import writes_to
+
 _WHAT = ("diagram", "energy", "curvature", "eigenvalue", "onset")
 _FORMATS = (".png", ".pdf", ".svg")
 
@@ -14,13 +16,10 @@ _FORMATS = (".png", ".pdf", ".svg")
 @click.argument(
     "folders", metavar="DIR...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@click.option(
-    "-o",
-    "--out",
-    type=click.Path(path_type=Path),
+@writes_to(
+    "The file to draw: .png, .pdf or .svg.",
     default=Path("plot.png"),
     show_default=True,
-    help="The file to draw: .png, .pdf or .svg.",
 )
 @click.option("--what", type=click.Choice(_WHAT), default="diagram", show_default=True)
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")

@@ -6,7 +6,10 @@ from pathlib import Path
 
 import click
 
+from eulerplateau.cli.options import offered
 from eulerplateau.errors import OutputError
+
+_OF_LOOP = "kappa", "kappa_n", "kappa_g", "contact_angle"
 
 
 @click.command()
@@ -25,6 +28,7 @@ from eulerplateau.errors import OutputError
 @click.option("--all", "everything", is_flag=True, help="Show every shape.")
 @click.option(
     "--colour",
+    shell_complete=offered("sides", "soap", "angle_defect", *_OF_LOOP),
     help="sides (front blue, back orange; of films by default), soap (the same, "
     "translucent), or a field of the shape files: angle_defect inside; kappa (of cells by "
     "default), kappa_n, kappa_g, contact_angle on the loop.",

@@ -10,6 +10,7 @@ import click
 
 from eulerplateau.cli.batch import OVERWRITE, RESUME, before, begin, carried_out
 from eulerplateau.cli.compiling import telling_of_compiling
+from eulerplateau.cli.options import offered, offered_settings, writes_to
 from eulerplateau.cli.overrides import parse_setting
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
@@ -21,18 +22,21 @@ if TYPE_CHECKING:
 @click.argument(
     "specs", metavar="RUN.toml...", nargs=-1, required=True, type=click.Path(path_type=Path)
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="The run folder; for several runs, the folder that holds theirs. "
+@writes_to(
+    "The run folder; for several runs, the folder that holds theirs. "
     "Default: beside RUN.toml, with its name and what is set.",
 )
-@click.option("--solver", help="newton, cg or cg-plain; short for --set solver.name=NAME.")
+@click.option(
+    "--solver",
+    shell_complete=offered("newton", "cg", "cg-plain"),
+    help="newton, cg or cg-plain; short for --set solver.name=NAME.",
+)
 @click.option(
     "--set",
     "settings",
     metavar="KEY=VALUE,...",
     multiple=True,
+    shell_complete=offered_settings("RunSpec"),
     help="Replace a key of the specification, as in solver.name=cg or start.seed=1,2,3; "
     "several values make several runs, several --set all their combinations.",
 )

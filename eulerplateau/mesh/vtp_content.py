@@ -64,7 +64,9 @@ def _cells(vertices: IntArray) -> Fields:
 
 
 def _array(name: str, values: NDArray[Any]) -> str:
-    """Return an array (n,) or (n, k) of numbers as an element of XML."""
+    """Return an array (n,) or (n, k) of numbers, or words (n,), as an element of XML."""
+    if values.dtype.kind == "U":
+        return _words(name, values.tolist())
     number = values.dtype.newbyteorder("<")
     content = np.ascontiguousarray(values, number).tobytes()
     width = values.shape[1] if values.ndim > 1 else 1
@@ -72,6 +74,15 @@ def _array(name: str, values: NDArray[Any]) -> str:
         f'<DataArray type="{_KINDS[number.kind]}{8 * number.itemsize}" Name="{name}" '
         f'NumberOfComponents="{width}" NumberOfTuples="{len(values)}" format="binary">'
         f"{_packed(content)}</DataArray>"
+    )
+
+
+def _words(name: str, words: list[str]) -> str:
+    """Return words as VTK has them: the numbers of their letters, a zero after each."""
+    letters = " ".join(str(letter) for word in words for letter in (*word.encode(), 0))
+    return (
+        f'<Array type="String" Name="{name}" NumberOfTuples="{len(words)}" '
+        f'format="ascii">{letters}</Array>'
     )
 
 

@@ -11,7 +11,6 @@ from .cell_spec import CellRunSpec as CellRunSpec, load_cell_run as load_cell_ru
 from .cell_table import CellBranchRow as CellBranchRow, CellRow as CellRow
 from .examples import write_examples as write_examples
 from .exploration import Exploration as Exploration, run_branches as run_branches
-from .folder import shape_name as shape_name
 from .kinds import Kind as Kind
 from .locus import run_locus as run_locus
 from .locus_record import Asked as Asked, Locus as Locus
@@ -33,6 +32,7 @@ from .series import (
     Series as Series,
     energy_above as energy_above,
 )
+from .series_file import shape_name as shape_name
 from .shape_files import (
     ShapeSequence as ShapeSequence,
     StoredShape as StoredShape,

@@ -11,7 +11,7 @@ from eulerplateau import __version__
 from eulerplateau.mesh import Disk
 from eulerplateau.runs.inputs import contents
 from eulerplateau.runs.parameters import LOOP_PARAMETERS
-from eulerplateau.runs.spec import RunSpec
+from eulerplateau.runs.spec import RunSpec, described
 from eulerplateau.threads import pools
 
 
@@ -27,7 +27,7 @@ def describe(spec: RunSpec, mesh: Disk, quantity: str) -> dict[str, Any]:
     (2 - B/E) can be had; for springs sigma_hat in sweep.csv is 2 sqrt(3) k L^3 / alpha.
     """
     return {
-        "spec": spec.model_dump(mode="json"),
+        "spec": described(spec),
         "mesh": {
             "sha256": mesh.digest,
             "vertices": mesh.n_v,

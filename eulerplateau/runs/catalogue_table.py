@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from eulerplateau.errors import OutputError
-from eulerplateau.runs.folder import read_summary
 from eulerplateau.runs.kinds import FILM
 from eulerplateau.runs.rows import CatalogueRow
+from eulerplateau.runs.run_files import read_summary
 from eulerplateau.runs.table import read_rows
 
 COUNT_COLUMNS = "load", "search", "by_starts", "by_deflation", "together"

@@ -14,6 +14,7 @@ from eulerplateau.loop import edges_of
 from eulerplateau.runs.cell_shapes import write_cell_shape
 from eulerplateau.runs.cell_spec import CellRunSpec
 from eulerplateau.runs.recording import OpenRun
+from eulerplateau.runs.spec import described
 
 
 def describe(spec: CellRunSpec) -> dict[str, Any]:
@@ -22,7 +23,7 @@ def describe(spec: CellRunSpec) -> dict[str, Any]:
     places = sha256(sites.points.tobytes() + sites.weights.tobytes()).hexdigest()
     return {
         "kind": "cell",
-        "spec": spec.model_dump(mode="json"),
+        "spec": described(spec),
         "mesh": {"sha256": places},
     }
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from eulerplateau.branches import SpecialPoint
 from eulerplateau.cells import ENDS, Cell, CellPoint, explore_cell, solve_cell, sweep_cell
 from eulerplateau.errors import ConflictError
@@ -160,13 +162,14 @@ def _recorded(
 ) -> Iterator[CellBranchRow]:
     """Write points as they come, special ones twice; yield their rows."""
     for point in points:
-        mode = {} if point.special is None else {"critical_mode": point.special.mode}
+        still = np.zeros_like(point.equilibrium.x)
+        mode = still if point.special is None else point.special.mode
         row: CellBranchRow = record_cell(
             run,
             CellBranchRow,
             varied,
             point.equilibrium,
-            mode,
+            {"critical_mode": mode},
             branch=point.branch,
             origin=point.origin,
             special=point.number,

@@ -12,6 +12,7 @@ from eulerplateau.cells import CellEquilibrium
 from eulerplateau.loop import edges_of
 from eulerplateau.mesh import fill_polygon, write_vtp
 from eulerplateau.runs.cell_table import CellRow
+from eulerplateau.runs.shape_files import of_row
 
 _OF_ITS_ROW = "step", "sigma_hat", "ks_hat", "beta_hat", "energy"
 
@@ -27,7 +28,8 @@ def write_cell_shape(
     Point fields: kappa; adhesion (1 where it adheres, else 0); force, of an adhesion on
     the substrate, and rest_place, where the adhesion is at rest, both zero elsewhere; the
     vectors `modes`, (n, 2) each. Field data, of its `row`: step, sigma_hat, ks_hat,
-    beta_hat, energy. Raises OutputError if the file cannot be written.
+    beta_hat, energy, status and n_unstable, and of a branch its number. Raises
+    OutputError if the file cannot be written.
     """
     n, vertices = len(found.x), found.cell.vertices
     edges = edges_of(found.x)
@@ -46,7 +48,7 @@ def write_cell_shape(
             "adhesion": adhesion,
             **{name: in_space(values) for name, values in vectors.items()},
         },
-        field_data={name: np.array([getattr(row, name)]) for name in _OF_ITS_ROW},
+        field_data=of_row(row, *_OF_ITS_ROW),
     )
 
 

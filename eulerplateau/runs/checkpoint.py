@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from eulerplateau.mesh import sync, write_whole
 from eulerplateau.runs.rows import Record
-from eulerplateau.runs.table import SPECIAL, read_special
+from eulerplateau.runs.series_file import SPECIAL
+from eulerplateau.runs.table import read_special
 
 Arrays = Mapping[str, NDArray[Any]]
 

@@ -15,14 +15,9 @@ from typing import Any, Generic, TextIO, TypeVar
 from eulerplateau.errors import ConflictError, OutputError
 from eulerplateau.mesh import TEMPORARY
 from eulerplateau.runs.checkpoint import Arrays, last_checkpoint
-from eulerplateau.runs.folder import (
-    TABLES,
-    WRITER,
-    check_is_run,
-    read_summary,
-    shape_name,
-)
 from eulerplateau.runs.rows import Record
+from eulerplateau.runs.run_files import TABLES, WRITER, check_is_run, read_summary
+from eulerplateau.runs.series_file import LOOPS, SHAPES, shape_name
 from eulerplateau.runs.shape_files import ends_as_shape, is_whole_shape
 from eulerplateau.runs.table import has_row, read_rows
 
@@ -203,8 +198,8 @@ def only_writer(path: Path) -> Iterator[None]:
 
 def _remove_halves(path: Path) -> None:
     """Remove what a process that was killed has not finished writing."""
-    for name in ("run.json", "*.csv", "*.pvd", ".checkpoint*", "shape_*.vtp"):
-        for folder in (path, path / "shapes"):
+    for name in ("run.json", "*.csv", "*.pvd", ".checkpoint*", "*.vtp"):
+        for folder in (path, path / SHAPES, path / LOOPS):
             for file in folder.glob(f"{TEMPORARY}*.{name.removeprefix('.')}"):
                 file.unlink(missing_ok=True)
 

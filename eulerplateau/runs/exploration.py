@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import (
     FilmPoint,
@@ -176,9 +178,13 @@ def _start(
 
 
 def _modes(point: FilmPoint) -> dict[str, FloatArray]:
-    """Return the critical mode, continued into the film as the film follows the loop."""
+    """Return the critical mode, continued into the film as the film follows the loop.
+
+    It is zero where no mode is critical: ParaView knows the fields of the first shape only.
+    """
     mode = point.critical_mode
-    return {} if mode is None else {"critical_mode": mode}
+    still = np.zeros_like(point.equilibrium.shape.x)
+    return {"critical_mode": still if mode is None else mode}
 
 
 def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:

@@ -1,13 +1,12 @@
 """The run folder: what a sweep has computed so far, valid after every step.
 
-It holds sweep.csv, one row per load; shapes/shape_0000.vtp and so on, one shape per row;
-sweep.pvd, the shapes as a series; run.json, what was run and how it ended; and, drawn
-later by others, diagram.png and pictures/shape_0000.png and so on.
+It holds sweep.csv, one row per load; shapes/shape_0000.vtp and so on, one shape per row,
+and of films loops/loop_0000.vtp; sweep.pvd, these as a series; run.json, what was run and
+how it ended; and, drawn later by others, diagram.png and pictures/shape_0000.png and so on.
 """
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import time
@@ -21,46 +20,36 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import OutputError
-from eulerplateau.mesh import Curvatures, Disk, sync, write_whole
+from eulerplateau.mesh import Curvatures, Disk, sync
 from eulerplateau.runs.checkpoint import (
-    CHECKPOINTS,
     Arrays,
     remove_checkpoints,
     write_checkpoint,
 )
 from eulerplateau.runs.rows import LoadName, Record, Row
-from eulerplateau.runs.shape_files import write_series, write_shape
-from eulerplateau.runs.table import SPECIAL, RowWriter, has_row
+from eulerplateau.runs.run_files import (
+    FOLDERS,
+    NEW,
+    TABLES,
+    check_is_run,
+    remove_run,
+    write_summary,
+)
+from eulerplateau.runs.series_file import (
+    SHAPES,
+    SPECIAL,
+    Listed,
+    loop_name,
+    shape_name,
+    write_shapes,
+)
+from eulerplateau.runs.shape_files import write_loop, write_shape
+from eulerplateau.runs.table import RowWriter, has_row
 
 # At most so much of the work is lost with the power.
 _SECOND = 1.0
 # So many shapes are listed in next to no time.
 _FEW = 200
-
-# In run.json: without it a folder is not ours, and nothing in it is ever removed.
-_MARK = {"program": "eulerplateau"}
-_SECTIONS = "spec", "mesh", "totals"
-WRITER = ".writer"
-TABLES = "sweep", "branches", "catalogue"
-# In a folder that holds another run: where one that replaces it has its first row.
-_NEW = ".new"
-_OUR_FILES = (
-    *(f"{table}.{form}" for table in TABLES for form in ("csv", "pvd", "png")),
-    "counts.csv",
-    SPECIAL,
-    *CHECKPOINTS,
-    "diagram.png",
-    "shapes/shape_*.vtp",
-    "pictures/shape_*.png",
-    "pictures/sheet*.png",
-    "pictures/turn_*.gif",
-    "pictures/sweep*.gif",
-)
-
-
-def shape_name(step: int) -> str:
-    """Return the path of a step's shape inside the run folder."""
-    return f"shapes/shape_{step:04d}.vtp"
 
 
 class RunFolder:
@@ -85,7 +74,7 @@ class RunFolder:
         self.path = path
         self.replaces = replaces
         self._name, self._row_type = name, row_type
-        self._shapes = [(row.step, row.load, shape_name(row.step)) for row in kept]
+        self._shapes = [Listed.of(path, row.step, row.load) for row in kept]
         self._load: LoadName | None = kept[-1].load_name if kept else None
         self._rows = RowWriter(path / f"{name}.csv", row_type, len(kept))
         self._closed, self._unlisted = False, bool(kept)
@@ -108,7 +97,7 @@ class RunFolder:
         pictures, once the new one has its first; a folder that holds anything but a run,
         or a path that cannot be made a folder, raises OutputError.
         """
-        new = path / _NEW
+        new = path / NEW
         try:
             if path.exists():
                 check_is_run(path)
@@ -116,12 +105,12 @@ class RunFolder:
             lies = any(has_row(path / f"{table}.csv") for table in TABLES)
             replaces = path if lies else None
             if replaces is None and path.exists():
-                _remove_run(path)
+                remove_run(path)
             own = path if replaces is None else new
             own.mkdir(parents=True, exist_ok=True)
             # First of all, so that the folder is known for a run's whatever comes.
-            _write_summary(own, summary)
-            (own / "shapes").mkdir(exist_ok=True)
+            write_summary(own, summary)
+            (own / SHAPES).mkdir(exist_ok=True)
         except OSError as error:
             problem = f"cannot be made a run folder: {error.strerror}"
             raise OutputError(path, problem) from None
@@ -143,8 +132,16 @@ class RunFolder:
         what the solver needs to go on from here, `curvatures` those of the shape, if they
         are known. Raises what `add` raises.
         """
-        known = modes, rest_mesh, state, curvatures
-        self.add(row, lambda path: write_shape(path, mesh, x, row, *known))
+        known = Curvatures.of(mesh, x) if curvatures is None else curvatures
+        vectors = modes or {}
+
+        def write(path: Path) -> None:
+            loop = self.path / loop_name(row.step)
+            loop.parent.mkdir(exist_ok=True)
+            write_loop(loop, mesh, x, row, vectors, known)
+            write_shape(path, mesh, x, row, vectors, rest_mesh, state, known)
+
+        self.add(row, write)
 
     def add(self, row: Record, write: Callable[[Path], None]) -> None:
         """Add a shape, which `write` writes to the file it is given, and then its row.
@@ -154,14 +151,14 @@ class RunFolder:
         """
         name = shape_name(row.step)
         write(self.path / name)
-        self._shapes.append((row.step, row.load, name))
+        self._shapes.append(Listed.of(self.path, row.step, row.load))
         self._load, self._unlisted = row.load_name, True
         now, spent = time.monotonic(), self._list_shapes_seconds
         # The list of all shapes is as long as the run: to write it costs ever more.
         if len(self._shapes) <= _FEW or now - self._listed >= 20 * spent:
             self._list_shapes()
         self._rows.append(row)
-        self._unsynced.append(name)
+        self._unsynced += self._shapes[-1].files
         if self.replaces is not None:
             self._take_place(self.replaces)
         # With checkpoints a row counts from the next one on.
@@ -196,12 +193,13 @@ class RunFolder:
         That has no rows from the first moment on, and this one none up to the last.
         """
         try:
-            _remove_run(old)
-            (old / "shapes").mkdir(exist_ok=True)
+            remove_run(old)
             self._rows.close()
             files = [file for file in self.path.rglob("*") if file.is_file()]
             for file in sorted(files, key=lambda file: file.suffix == ".csv"):
-                os.replace(file, old / file.relative_to(self.path))
+                there = old / file.relative_to(self.path)
+                there.parent.mkdir(exist_ok=True)
+                os.replace(file, there)
         except OSError as error:
             raise OutputError(old, f"cannot be replaced: {error.strerror}") from None
         shutil.rmtree(self.path, ignore_errors=True)
@@ -210,14 +208,15 @@ class RunFolder:
 
     def write_summary(self, summary: Mapping[str, object]) -> None:
         """Replace run.json by `summary`: plain data, all floats finite."""
-        _write_summary(self.path, summary)
+        write_summary(self.path, summary)
 
     def _list_shapes(self) -> None:
         """Write the series of all shapes so far."""
         began = time.monotonic()
         if self._load is not None and self._unlisted:
             self._unlisted = False
-            write_series(self.path / f"{self._name}.pvd", self._shapes, self._load)
+            path = self.path / f"{self._name}.pvd"
+            write_shapes(path, self._shapes, self._load.text)
         self._listed = time.monotonic()
         self._list_shapes_seconds = self._listed - began
 
@@ -249,8 +248,8 @@ class RunFolder:
 
     def discard(self) -> None:
         """Remove what there is of a run without rows."""
-        _remove_run(self.path)
-        for file in (self.path / "run.json", self.path / "shapes"):
+        remove_run(self.path)
+        for file in (self.path / "run.json", *(self.path / name for name in FOLDERS)):
             with suppress(OSError):
                 file.rmdir() if file.is_dir() else file.unlink()
 
@@ -264,35 +263,3 @@ class RunFolder:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def _write_summary(path: Path, summary: Mapping[str, object]) -> None:
-    text = json.dumps({**_MARK, **summary}, indent=2, allow_nan=False)
-    write_whole(path / "run.json", f"{text}\n".encode())
-
-
-def check_is_run(path: Path) -> None:
-    """Raise OutputError for a folder with files that is no run."""
-    ours = WRITER, _NEW
-    files = [file.name for file in path.iterdir() if not file.name.startswith(ours)]
-    if files and not read_summary(path).items() >= _MARK.items():
-        problem = "holds something else than a run: name an empty or a new folder"
-        raise OutputError(path, problem)
-
-
-def _remove_run(path: Path) -> None:
-    for pattern in _OUR_FILES:
-        for file in path.glob(pattern):
-            file.unlink()
-
-
-def read_summary(path: Path) -> Mapping[str, Any]:
-    """Return what the run.json of a folder says; empty if there is none or a broken one.
-
-    What should be a section and is none is left out.
-    """
-    # Anything but an object has no items.
-    with suppress(OSError, ValueError, RecursionError, AttributeError):
-        said = json.loads((path / "run.json").read_bytes()).items()
-        return {k: v for k, v in said if k not in _SECTIONS or isinstance(v, dict)}
-    return {}

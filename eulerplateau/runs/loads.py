@@ -12,6 +12,7 @@ from pydantic import (
     Discriminator,
     Field,
     Tag,
+    ValidationInfo,
     field_validator,
     model_validator,
 )
@@ -102,10 +103,10 @@ Load = Annotated[
 ]
 
 
-def _a_list(given: Any) -> Any:
+def _a_list(given: Any, info: ValidationInfo) -> Any:
     """Return what may be a list of loads; ValueError that says how one is written."""
     if isinstance(given, int | float) and not isinstance(given, bool):
-        raise ValueError(f"should be a list, as in [{given}], with --set too")
+        raise ValueError(f"should be a list: write {info.field_name} = [{given}]")
     # Behind a check of ours a strict tuple takes no list.
     return tuple(given) if isinstance(given, list) else given
 

@@ -10,13 +10,14 @@ from typing import Any
 
 from eulerplateau.errors import MissingLibraryError, OutputError
 from eulerplateau.film import SPRING_LOAD
-from eulerplateau.runs.folder import read_summary, shape_name
 from eulerplateau.runs.kinds import FILM, Kind, film_kind
 from eulerplateau.runs.rows import LoadName, Record, columns
+from eulerplateau.runs.run_files import read_summary
 from eulerplateau.runs.series import Branch, Leg, read_branches, read_legs
+from eulerplateau.runs.series_file import SPECIAL, shape_name
 from eulerplateau.runs.shape_files import ShapeSequence, read_shapes
 from eulerplateau.runs.states import distinct_steps, stable_states
-from eulerplateau.runs.table import SPECIAL, read_rows, read_special
+from eulerplateau.runs.table import read_rows, read_special
 
 
 @dataclass(frozen=True, repr=False)

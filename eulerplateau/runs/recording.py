@@ -19,8 +19,9 @@ from eulerplateau.mesh import Measurer
 from eulerplateau.runs.about import blas_threads, describe, surroundings
 from eulerplateau.runs.checkpoint import Arrays
 from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
-from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.folder import RunFolder
 from eulerplateau.runs.rows import Record, Row, columns
+from eulerplateau.runs.series_file import shape_name
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.table import write_special
 from eulerplateau.solvers import Equilibrium, Problem

@@ -1,8 +1,9 @@
-"""Shapes as .vtp files and the .pvd series over them, for ParaView and pyvista.
+"""Shapes as .vtp files, for ParaView and pyvista.
 
-A shape holds the loop as one closed polyline (cell 0: "Extract Cells By Type" and "Tube"
-show the wire) and the film as triangles (cells 1 ... n_t). Quantities of the loop are NaN
-inside the film and those of the film NaN on the loop, so that neither is mistaken for 0.
+A shape holds the loop as one closed polyline (cell 0) and the film as triangles (cells
+1 ... n_t). Quantities of the loop are NaN inside the film and those of the film NaN on the
+loop, so that neither is mistaken for 0. The loop has a file by itself, with its own
+quantities and nothing that is NaN: what colours and arrows of the loop are drawn from.
 """
 
 from __future__ import annotations
@@ -26,13 +27,13 @@ from eulerplateau.mesh import (
     VtpFile,
     read_vtp,
     write_vtp,
-    write_whole,
 )
 from eulerplateau.runs.parameters import LOOP_PARAMETERS
-from eulerplateau.runs.rows import LoadName, Row
+from eulerplateau.runs.rows import Record, Row
 
 # Field data of a shape file: of its row, and the SHA-256 of the mesh at rest in bytes.
 _OF_ITS_ROW = "step", "kL3_alpha", "sigma_hat", "energy"
+_OF_SOME_ROWS = "branch", "n_unstable"
 _REST_MESH = "rest_mesh_sha256"
 _END = b"</VTKFile>\n"
 _LOOP_FIELDS = ("kappa", "kappa_n", "kappa_g", "contact_angle", "tangent", "normal")
@@ -98,14 +99,11 @@ def write_shape(
 
     Point fields on the loop: kappa, kappa_n, kappa_g, contact_angle, tangent, normal (of
     the film); inside: angle_defect; everywhere: on_loop (1 or 0) and the vectors `modes`,
-    (n_v, 3) each, under their names. Field data, of its `row`: step, kL3_alpha, sigma_hat,
-    energy, what is varied if that is no load, and the SHA-256 of the mesh at rest,
-    `rest_mesh`, by default that of `mesh`; and of the solver's `state` what it needs to go
-    on from here. `curvatures` are those of the shape, found here if they are not known.
-    Raises OutputError if the file cannot be written.
+    (n_v, 3) each, under their names. Field data: what `of_row` has of its `row`, and the
+    SHA-256 of the mesh at rest, `rest_mesh`, by default that of `mesh`; and of the solver's
+    `state` what it needs to go on from here. `curvatures` are those of the shape, found
+    here if they are not known. Raises OutputError if the file cannot be written.
     """
-    names = dict.fromkeys((*_OF_ITS_ROW, row.quantity))
-    about = {name: np.array([getattr(row, name)]) for name in names}
     digest = bytes.fromhex(mesh.digest if rest_mesh is None else rest_mesh)
     write_vtp(
         path,
@@ -115,11 +113,55 @@ def write_shape(
         point_fields=_point_fields(mesh, curvatures or Curvatures.of(mesh, x))
         | dict(modes or {}),
         field_data={
-            **about,
+            **_about(row),
             _REST_MESH: np.frombuffer(digest, dtype=np.uint8),
             **(state or {}),
         },
     )
+
+
+def write_loop(
+    path: Path,
+    mesh: Disk,
+    x: FloatArray,
+    row: Row,
+    vectors: Mapping[str, FloatArray],
+    curvatures: Curvatures,
+) -> None:
+    """Write the loop of a film at positions `x` (n_v, 3) to `path` (.vtp), by itself.
+
+    Point fields as those of the shape on the loop, of `vectors` (n_v, 3) too; field data of
+    its `row`. Raises OutputError if the file cannot be written.
+    """
+    write_vtp(
+        path,
+        x[mesh.loop],
+        np.empty((0, 3), dtype=np.int64),
+        loop=np.arange(mesh.n_b),
+        point_fields={
+            **{name: getattr(curvatures.frame, name) for name in _LOOP_FIELDS},
+            **{name: values[mesh.loop] for name, values in vectors.items()},
+        },
+        field_data=_about(row),
+    )
+
+
+def _about(row: Row) -> dict[str, NDArray[Any]]:
+    """Return the field data of a film's row: its step, loads, energy, what is varied ..."""
+    return of_row(row, *dict.fromkeys((*_OF_ITS_ROW, row.quantity)))
+
+
+def of_row(row: Record, *names: str) -> dict[str, NDArray[Any]]:
+    """Return field data: these numbers of a row, and its status.
+
+    And its branch and the number of its unstable modes, where it knows them.
+    """
+    about = {name: np.array([getattr(row, name)]) for name in names}
+    for name in _OF_SOME_ROWS:
+        value = getattr(row, name, None)
+        if value is not None:
+            about[name] = np.array([value])
+    return {**about, "status": np.array([row.status.value])}
 
 
 def read_shape(path: str | Path) -> StoredShape:
@@ -207,37 +249,6 @@ def _read(path: Path, of_its_row: tuple[str, ...]) -> VtpFile:
 
 def _not_a_shape(path: Path) -> OutputError:
     return OutputError(path, "is not a whole shape file of a run")
-
-
-def write_series(
-    path: Path, shapes: Sequence[tuple[int, float, str]], load: LoadName
-) -> None:
-    """Write the .pvd series `path` over `shapes`: (step, load, file relative to `path`).
-
-    The time ParaView shows is the load if the loads only rise or only fall,
-    and the step otherwise: a sweep up and down meets each load twice, and ParaView shows
-    one shape per time. Raises OutputError if the file cannot be written.
-    """
-    change = np.diff([value for _, value, _ in shapes])
-    by_load = bool((change > 0).all() or (change < 0).all())
-    timed = sorted((value if by_load else step, name) for step, value, name in shapes)
-    time_is = f"load {load.text}" if by_load else "step"
-    lines = [
-        f'    <DataSet timestep="{time!r}" part="0" file="{name}"/>' for time, name in timed
-    ]
-    content = "\n".join(
-        [
-            '<?xml version="1.0"?>',
-            f"<!-- timestep is the {time_is} -->",
-            '<VTKFile type="Collection" version="0.1">',
-            "  <Collection>",
-            *lines,
-            "  </Collection>",
-            "</VTKFile>",
-            "",
-        ]
-    )
-    write_whole(path, content.encode("utf-8"))
 
 
 def _point_fields(mesh: Disk, curvatures: Curvatures) -> dict[str, NDArray[Any]]:

@@ -255,6 +255,12 @@ def at_home(key: str, file: str) -> Path:
         raise SpecError(key, f"found {file!r}; whose home directory is not known") from None
 
 
+def described(spec: Settings) -> dict[str, Any]:
+    """Return a specification as run.json has it: files are found from wherever one is."""
+    data: dict[str, Any] = spec.model_dump(mode="json")
+    return located(data, Path.cwd())
+
+
 def override(data: dict[str, Any], key: str, value: Any) -> None:
     """Replace a dotted key of a specification read as plain data; raises SpecError."""
     *sections, name = key.split(".")

@@ -15,7 +15,6 @@ from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.runs.about import describe
 from eulerplateau.runs.continuing import look
-from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.kinds import film_kind
 from eulerplateau.runs.recording import (
@@ -25,6 +24,7 @@ from eulerplateau.runs.recording import (
     recording,
 )
 from eulerplateau.runs.rows import Row
+from eulerplateau.runs.series_file import shape_name
 from eulerplateau.runs.shape_files import read_state
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import make_problem, start_shape

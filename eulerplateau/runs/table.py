@@ -15,6 +15,7 @@ from eulerplateau.errors import OutputError
 from eulerplateau.film import SPRING_LOAD
 from eulerplateau.mesh import write_whole
 from eulerplateau.runs.rows import Record, Row, columns
+from eulerplateau.runs.series_file import SPECIAL, SPECIAL_SHAPES, Listed, write_series
 from eulerplateau.solvers import Status
 
 _INTEGERS = {
@@ -26,8 +27,6 @@ _MAY_BE_EMPTY = {
     "first_start", "first_guess",
 }  # fmt: skip
 _WORDS = {"symmetry"}
-
-SPECIAL = "special_points.csv"
 
 RowType = TypeVar("RowType", bound=Record)
 
@@ -120,8 +119,14 @@ def table_content(names: Sequence[str], lines: Sequence[Mapping[str, Any]]) -> b
 def write_special(
     folder: Path, names: Sequence[str], points: Sequence[Mapping[str, Any]]
 ) -> None:
-    """Write the special points of an exploration; raises OutputError."""
+    """Write the special points of an exploration, and the series of their shapes.
+
+    Raises OutputError.
+    """
     write_whole(folder / SPECIAL, table_content(names, points))
+    met = [(int(at["number"]), Listed.of(folder, int(at["step"]), 0.0)) for at in points]
+    timed = [(number, shape.files) for number, shape in met]
+    write_series(folder / SPECIAL_SHAPES, timed, "number of the special point")
 
 
 def read_special(path: Path) -> dict[int, dict[str, str]]:

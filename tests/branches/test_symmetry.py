@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.symmetry import OPERATIONS, loop_distance, mode_symmetry
+from eulerplateau.branches.symmetry import OPERATIONS, ROUND, loop_distance, mode_symmetry
 from tests.helpers.shapes import rotation
 
 N = 64
@@ -56,6 +56,34 @@ def test_parities_of_an_ellipses_modes(name: str, moved: bool) -> None:
     symmetry = mode_symmetry(loop, mode)
     assert set(symmetry.keeps) == kept
     assert set(symmetry.breaks) == ALL - kept
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 5])
+@pytest.mark.parametrize("raised", [False, True])
+def test_a_disk_has_no_long_axis_to_tell_of(n: int, raised: bool) -> None:
+    """Its mode cos n theta, in the plane or out of it, however the circle is turned."""
+    angle = 2 * np.pi * np.arange(N) / N
+    o, wave = np.zeros(N), np.cos(n * angle + 0.3)
+    circle = np.column_stack([np.cos(angle), np.sin(angle), o]) / (2 * np.pi)
+    mode = np.column_stack([o, o, wave]) if raised else wave[:, None] * circle
+    turn = rotation()
+    found = mode_symmetry(circle @ turn, mode @ turn)
+    even = n % 2 == 0
+    kept = {ACROSS_Z: not raised, ABOUT_Z: even, "inversion": even != raised}
+    assert set(found.keeps) == {name for name, keeps in kept.items() if keeps}
+    assert set(found.breaks) == {ROUND} | {
+        name for name, keeps in kept.items() if not keeps
+    }
+
+
+def test_what_is_said_of_a_saddle_depends_on_no_choice_of_axes() -> None:
+    """Of Enneper's, two of whose extents are equal: axes along it, or between."""
+    angle = 2 * np.pi * np.arange(N) / N
+    for phase in (0.0, 0.4, np.pi / 4):
+        wave = 0.05 * np.cos(2 * (angle - phase))
+        saddle = np.column_stack([np.cos(angle), np.sin(angle), wave]) / (2 * np.pi)
+        mode = np.column_stack([0 * angle, 0 * angle, np.sin(2 * (angle - phase))])
+        assert named(saddle, mode) == {ABOUT_Z}
 
 
 @pytest.mark.parametrize(

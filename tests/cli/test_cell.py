@@ -118,7 +118,7 @@ def test_branches_prints_its_special_points(run: Path):
     words += ["--set", "branches.special_points=0", "--set", "branches.unstable_modes=0"]
     done = run_here("cell", "branches", run, *words, "--no-pictures")
     assert done.returncode == 0
-    assert "bifurcation 0 at sigma_hat = 6" in done.stdout
+    assert "bifurcation 0 (double) at sigma_hat = 6" in done.stdout
 
 
 def test_phase_diagram_asks_for_a_regular_cell(run: Path, tmp_path: Path):

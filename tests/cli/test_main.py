@@ -54,6 +54,7 @@ def test_sweep_ends_with_0_and_writes_its_folder_beside_the_specification(
     assert [row.kL3_alpha for row in read_rows(folder / "sweep.csv")] == [500, 900]
     assert {path.name for path in folder.iterdir()} == {
         "run.json",
+        "loops",
         "shapes",
         "sweep.csv",
         "sweep.pvd",

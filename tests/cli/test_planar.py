@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from eulerplateau.cli.planar import planar
-from eulerplateau.errors import OutputError, SpecError
+from eulerplateau.errors import EulerPlateauError, OutputError, SpecError
 from eulerplateau.exact.planar import LOBES, planar_film, thresholds
 from eulerplateau.pictures import figure
 from eulerplateau.pictures.planar import ENERGY, GALLERY
@@ -87,6 +87,47 @@ def test_impossible_films_are_refused(n: str, load: str, key: str) -> None:
     assert isinstance(result.exception, SpecError)
     assert result.exception.key == key
     assert result.exception.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("load", "regime"),
+    [("1000", "free"), ("1800", "free"), ("3000", "point"), ("6e3", "line")],
+)
+def test_with_a_diameter_the_contact_is_there_too(load: str, regime: str) -> None:
+    arguments = ("shape", "--n", "2", "--sigma-hat", load, "--diameter", "0.05")
+    row, film = json.loads(output(*arguments, "--json")), planar_film(2, float(load), 0.05)
+    assert list(row)[-3:] == ["contact_force", "contact_length", "regime"]
+    assert row.pop("regime") == regime
+    assert row == {name: getattr(film, name) for name in row}
+    lines = dict(line.split() for line in output(*arguments).splitlines())
+    assert lines.pop("regime") == regime
+    assert {name: float(value) for name, value in lines.items()} == pytest.approx(row)
+
+
+def test_the_table_with_a_diameter_is_empty_where_the_loop_is_too_thick() -> None:
+    rows = json.loads(output("table", "--diameter", "0.05", "--json"))
+    assert (rows[0]["n"], rows[1]["sigma_line_contact"]) == (2, None)
+    limits = thresholds(2, 0.05)
+    assert rows[0]["sigma_contact"] == limits.sigma_contact
+    assert rows[0]["sigma_line_contact"] == limits.sigma_line_contact
+    assert output("table", "--diameter", "0.05").splitlines()[2].split()[-1] == "-"
+
+
+@pytest.mark.parametrize("diameter", ["0", "-0.1", "0.11", "nan", "inf"])
+def test_impossible_diameters_are_refused(diameter: str) -> None:
+    for command in (["shape", "--n=2", "--sigma-hat=3000"], ["table"]):
+        result = CliRunner().invoke(planar, [*command, f"--diameter={diameter}"])
+        assert isinstance(result.exception, SpecError)
+        assert result.exception.key == "diameter"
+
+
+def test_a_loop_that_is_too_thick_ends_with_four() -> None:
+    arguments = ["shape", "--n=2", "--sigma-hat=1e5", "--diameter=0.1", "--json"]
+    result = CliRunner().invoke(planar, arguments)
+    assert isinstance(result.exception, EulerPlateauError)
+    assert result.exception.exit_code == 4
+    assert str(result.exception).startswith("too_thick: ")
+    assert result.stdout == ""
 
 
 @pytest.mark.parametrize("arguments", [["shape", "--n", "two"], ["shape"], ["figures"]])

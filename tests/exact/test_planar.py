@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from itertools import pairwise
 from math import isclose, pi
 
 import numpy as np
 import pytest
-from numpy.polynomial import Chebyshev
-from numpy.polynomial.legendre import leggauss
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
-from eulerplateau.exact.planar import LOBES, PlanarFilm, Regime, planar_film, thresholds
+from eulerplateau.exact.planar import LOBES, Regime, planar_film, thresholds
 from eulerplateau.exact.planar.elastica import Elastica
+from tests.helpers.planar_films import fits, inside, integral
 
 # Paper, tab:contact.
 TABLE = {
@@ -52,42 +50,18 @@ def loads(n: int) -> tuple[float, ...]:
 
 # One film for all that is asked of it.
 film_at = cache(planar_film)
-CASES = [(n, load) for n in (2, 3, 4, 8, 12) for load in loads(n)]
-every_film = pytest.mark.parametrize(("n", "load"), CASES)
-
-
-def fits(film: PlanarFilm, quantity: Callable[[FloatArray], FloatArray]) -> list[Chebyshev]:
-    """Return interpolants of a quantity on the analytic pieces of half a lobe."""
-    return [
-        Chebyshev.interpolate(quantity, 40, domain=[low, high])
-        for low, high in pairwise(film.half_lobe.ends)
-    ]
-
-
-def inside(piece: Chebyshev) -> FloatArray:
-    """Return points of a piece, clear of its ends, where differentiation loses digits."""
-    low, high = piece.domain
-    return np.linspace(low + 0.03 * (high - low), high - 0.03 * (high - low), 50)
-
-
-def integral(film: PlanarFilm, density: Callable[[FloatArray], FloatArray]) -> float:
-    """Return a density's integral over the loop, by Gauss's rule on its pieces."""
-    nodes, weights = leggauss(80)
-    return (
-        2
-        * film.lobes
-        * sum(
-            (high - low)
-            / 2
-            * float(weights @ density((low + high + (high - low) * nodes) / 2))
-            for low, high in pairwise(film.half_lobe.ends)
-        )
-    )
+CASES = [(n, load, None) for n in (2, 3, 4, 8, 12) for load in loads(n)]
+# Free, in point contact and in line contact.
+THICK = [(2, 2000.0, 0.05), (2, 3000.0, 0.05), (2, 6000.0, 0.05), (2, 1e5, 0.002)]
+THICK += [(3, 20000.0, 0.02), (3, 5e4, 0.02), (8, 3e5, 0.008), (8, 1.2e6, 0.004)]
+every_film = pytest.mark.parametrize(("n", "load", "diameter"), CASES + THICK)
 
 
 @every_film
-def test_curvature_solves_the_shape_equation_off_the_contact(n: int, load: float) -> None:
-    film = film_at(n, load)
+def test_curvature_solves_the_shape_equation_off_the_contact(
+    n: int, load: float, diameter: float | None
+) -> None:
+    film = film_at(n, load, diameter)
     for kappa in fits(film, film.curvature):
         low, high = kappa.domain
         if film.contact_length and isclose(high - low, film.contact_length):
@@ -99,8 +73,10 @@ def test_curvature_solves_the_shape_equation_off_the_contact(n: int, load: float
 
 
 @every_film
-def test_angle_and_positions_are_those_of_the_curvature(n: int, load: float) -> None:
-    film = film_at(n, load)
+def test_angle_and_positions_are_those_of_the_curvature(
+    n: int, load: float, diameter: float | None
+) -> None:
+    film = film_at(n, load, diameter)
     steepest = max(film.kappa_max, -film.kappa_min)
     along = zip(
         fits(film, film.curvature),
@@ -117,8 +93,10 @@ def test_angle_and_positions_are_those_of_the_curvature(n: int, load: float) -> 
 
 
 @every_film
-def test_loop_is_closed_without_gaps_and_turns_once(n: int, load: float) -> None:
-    film = film_at(n, load)
+def test_loop_is_closed_without_gaps_and_turns_once(
+    n: int, load: float, diameter: float | None
+) -> None:
+    film = film_at(n, load, diameter)
     np.testing.assert_allclose(film.positions(1.0), film.positions(0.0), atol=1e-14)
     assert film.half_lobe.ends[-1] == pytest.approx(1 / (2 * n), rel=1e-14)
     assert float(film.tangent_angle(1.0) - film.tangent_angle(0.0)) == pytest.approx(2 * pi)
@@ -132,16 +110,20 @@ def test_loop_is_closed_without_gaps_and_turns_once(n: int, load: float) -> None
 
 
 @every_film
-def test_half_lobe_keeps_to_its_sector_so_no_two_parts_cross(n: int, load: float) -> None:
-    film = film_at(n, load)
+def test_half_lobe_keeps_to_its_sector_so_no_two_parts_cross(
+    n: int, load: float, diameter: float | None
+) -> None:
+    film = film_at(n, load, diameter)
     x, y = film.positions(np.linspace(0, 1 / (2 * n), 2001)).T
     assert y.min() >= -1e-14
     assert (x * np.sin(pi / n) - y * np.cos(pi / n)).min() >= -1e-14
 
 
 @every_film
-def test_film_has_n_fold_and_mirror_symmetry(n: int, load: float) -> None:
-    film = film_at(n, load)
+def test_film_has_n_fold_and_mirror_symmetry(
+    n: int, load: float, diameter: float | None
+) -> None:
+    film = film_at(n, load, diameter)
     t = np.linspace(-0.5, 0.5, 101) / n
     x, y = film.positions(t).T
     c, s = np.cos(2 * pi / n), np.sin(2 * pi / n)
@@ -152,8 +134,10 @@ def test_film_has_n_fold_and_mirror_symmetry(n: int, load: float) -> None:
 
 
 @every_film
-def test_energy_area_and_extremes_are_those_of_the_curve(n: int, load: float) -> None:
-    film = film_at(n, load)
+def test_energy_area_and_extremes_are_those_of_the_curve(
+    n: int, load: float, diameter: float | None
+) -> None:
+    film = film_at(n, load, diameter)
 
     def sector(t: FloatArray) -> FloatArray:
         points = film.points(t)

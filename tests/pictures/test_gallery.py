@@ -20,9 +20,10 @@ from eulerplateau.loop import directors
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.runs.cell_table import CellRow
-from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.folder import RunFolder
 from eulerplateau.runs.record import read_run
 from eulerplateau.runs.rows import BranchRow, RatioRow, TwistRow, columns
+from eulerplateau.runs.series_file import shape_name
 from tests.helpers.command import run_here
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
 from tests.runs.test_output import ROW

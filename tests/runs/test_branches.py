@@ -16,8 +16,8 @@ from eulerplateau.errors import OutputError, SpecError
 from eulerplateau.mesh import read_vtp, write_mesh
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.exploration import SPECIAL_COLUMNS, Exploration, run_branches
-from eulerplateau.runs.folder import shape_name
 from eulerplateau.runs.rows import BranchRow
+from eulerplateau.runs.series_file import shape_name
 from eulerplateau.runs.shape_files import read_shape
 from eulerplateau.runs.spec import RunSpec, load_run
 from eulerplateau.runs.table import read_rows
@@ -50,8 +50,45 @@ def test_every_point_has_its_row_and_its_shape(result: Exploration) -> None:
         about = read_vtp(result.folder / shape_name(row.step)).field_data
         told = [about[name][0] for name in ("step", "kL3_alpha", "energy")]
         assert told == [row.step, row.kL3_alpha, row.energy]
-    series = ElementTree.parse(result.folder / "branches.pvd").getroot()
-    assert len(series.findall(".//DataSet")) == len(rows)
+    listed = listed_in(result.folder / "branches.pvd")
+    assert [part for part, _ in listed] == ["0", "1"] * len(rows)
+
+
+def listed_in(series: Path) -> list[tuple[str, Path]]:
+    """The parts and files of a series, in their order."""
+    found = ElementTree.parse(series).getroot().findall(".//DataSet")
+    return [(at.attrib["part"], series.parent / at.attrib["file"]) for at in found]
+
+
+def test_every_step_has_the_same_fields_and_a_loop_has_no_gaps(
+    result: Exploration, elongated: Disk
+) -> None:
+    """ParaView lists the fields of the first step, and draws nothing where one is NaN."""
+    import pyvista
+
+    kinds: dict[str, set[tuple[str, ...]]] = {"0": set(), "1": set()}
+    for part, file in listed_in(result.folder / "branches.pvd"):
+        shape = pyvista.read(file)
+        kinds[part].add((*shape.point_data.keys(), *shape.field_data.keys()))
+        row = result.rows[int(shape.field_data["step"][0])]
+        told = [shape.field_data[name][0] for name in ("branch", "n_unstable", "status")]
+        assert told == [row.branch, row.n_unstable, row.status.value]
+        if part == "1":
+            assert (shape.n_points, shape.n_cells) == (elongated.n_b, 1)
+            for name, values in shape.point_data.items():
+                assert np.isfinite(values).all(), name
+            film = read_vtp(result.folder / shape_name(row.step))
+            np.testing.assert_array_equal(shape.points, film.points[elongated.loop])
+            kappa_n = film.point_fields["kappa_n"][elongated.loop]
+            np.testing.assert_array_equal(shape.point_data["kappa_n"], kappa_n)
+    assert [len(found) for found in kinds.values()] == [1, 1]
+
+
+def test_special_points_are_a_series_of_their_own(result: Exploration) -> None:
+    (special,) = read_special(result.folder)
+    listed = listed_in(result.folder / "special_points.pvd")
+    shape = result.folder / shape_name(int(special["step"]))
+    assert [file for part, file in listed if part == "0"] == [shape]
 
 
 def test_special_points_are_rows_too(result: Exploration) -> None:
@@ -83,9 +120,9 @@ def test_critical_mode_is_in_the_shape_of_its_special_point(
 
     for row in result.rows:
         data = pyvista.read(result.folder / shape_name(row.step)).point_data
-        assert ("critical_mode" in data) == (row.special is not None)
+        mode = np.asarray(data["critical_mode"])
+        assert mode.any() == (row.special is not None)
         if row.special is not None:
-            mode = np.asarray(data["critical_mode"])
             assert mode.shape == (elongated.n_v, 3)
             assert np.square(mode[:, 2]).sum() > 0.999 * np.square(mode).sum()
 
@@ -199,7 +236,7 @@ def test_quiet_command_draws_and_says_nothing(tmp_path: Path) -> None:
     names = {file.name for file in folder.iterdir()}
     assert names == {
         "run.json", "branches.csv", "branches.pvd", "branches.png",
-        "special_points.csv", "shapes",
+        "special_points.csv", "special_points.pvd", "shapes", "loops",
     }  # fmt: skip
 
 

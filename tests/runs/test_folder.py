@@ -15,7 +15,8 @@ import pytest
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import read_vtp
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.folder import RunFolder
+from eulerplateau.runs.series_file import loop_name, shape_name
 from eulerplateau.runs.shape_files import read_shape
 from eulerplateau.runs.table import read_rows
 from tests.helpers.shapes import disk_points, mesh_of
@@ -73,7 +74,7 @@ def check_run(path: Path, n_rows: int) -> None:
     series = ElementTree.parse(path / "sweep.pvd").getroot().findall(".//DataSet")
     assert len(series) >= n_rows
     for entry in series:
-        read_shape(path / entry.attrib["file"])
+        assert read_vtp(path / entry.attrib["file"]).lines
     json.loads((path / "run.json").read_text())
     names = {file.name for file in path.rglob("*") if file.is_file()}
     assert not {name for name in names if name.startswith(".")}
@@ -154,6 +155,6 @@ def test_earlier_run_is_replaced_and_other_files_are_kept(
         folder.record(ROW, mesh, mesh.x)
     check_run(tmp_path, n_rows=1)
     files = {str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*") if p.is_file()}
-    ours = {"run.json", "sweep.csv", "sweep.pvd", shape_name(0)}
+    ours = {"run.json", "sweep.csv", "sweep.pvd", shape_name(0), loop_name(0)}
     assert files == {*ours, "notes.txt"}
     assert (tmp_path / "notes.txt").read_text() == "mine"

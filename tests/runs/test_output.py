@@ -18,9 +18,10 @@ from eulerplateau.film.load import SPRING_LOAD
 from eulerplateau.mesh import read_vtp
 from eulerplateau.mesh.curvature import angle_defects, loop_frame
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.runs.folder import RunFolder, shape_name
+from eulerplateau.runs.folder import RunFolder
 from eulerplateau.runs.rows import COLUMNS, Row
-from eulerplateau.runs.shape_files import read_shape, write_series, write_shape
+from eulerplateau.runs.series_file import Listed, write_shapes
+from eulerplateau.runs.shape_files import read_shape, write_shape
 from eulerplateau.runs.table import RowWriter, read_rows
 from eulerplateau.solvers.equilibrium import Status
 from tests.helpers.shapes import disk_points, eight, mesh_of
@@ -185,11 +186,11 @@ def test_part_of_a_shape_is_refused(tmp_path: Path, mesh: Disk, part: float) -> 
 def test_series_has_rising_distinct_times(
     tmp_path: Path, loads: list[float], times: list[float]
 ) -> None:
-    entries = [(i, load, shape_name(i)) for i, load in enumerate(loads)]
-    write_series(tmp_path / "sweep.pvd", entries, SPRING_LOAD)
+    entries = [Listed.of(tmp_path, i, load) for i, load in enumerate(loads)]
+    write_shapes(tmp_path / "sweep.pvd", entries, SPRING_LOAD.text)
     found = ElementTree.parse(tmp_path / "sweep.pvd").getroot().findall(".//DataSet")
     assert [float(entry.attrib["timestep"]) for entry in found] == times
-    load_of = {name: load for _, load, name in entries}
+    load_of = {entry.files[0]: entry.load for entry in entries}
     shown = [load_of[entry.attrib["file"]] for entry in found]
     assert shown == (times if isinstance(times[0], float) else loads)
 

@@ -179,7 +179,7 @@ def test_special_points_in_link_are_told_by_their_link(mesh: Path, tmp_path: Pat
     (point,) = run.special.values()
     assert point["kind"] == "bifurcation"
     assert float(point["sigma_hat"]) == 500.0
-    assert f"bifurcation 0 at link = {float(point['link']):.8g} +- " in ran.stdout
+    assert f"bifurcation 0 (double) at link = {float(point['link']):.8g} +- " in ran.stdout
     at = [row for row in run.rows if row.special == 0]
     assert {row.link for row in at} == {float(point["link"])}
 

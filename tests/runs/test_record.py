@@ -15,10 +15,11 @@ from eulerplateau.errors import EulerPlateauError, MissingLibraryError, OutputEr
 from eulerplateau.film.load import SPRING_LOAD, TENSION
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.runs.continuing import differences
-from eulerplateau.runs.folder import read_summary, shape_name
 from eulerplateau.runs.record import Run, read_run, read_runs
 from eulerplateau.runs.rows import COLUMNS, BranchRow, columns
+from eulerplateau.runs.run_files import read_summary
 from eulerplateau.runs.series import read_legs
+from eulerplateau.runs.series_file import shape_name
 from eulerplateau.solvers.equilibrium import Status
 from tests.helpers.plotted_runs import pitchfork, record, row_at
 from tests.helpers.shapes import disk_points, mesh_of

@@ -67,7 +67,7 @@ def test_a_mesh_that_is_no_section_says_what_to_write(run):
 def test_a_single_load_says_how_a_list_is_written(run, loads):
     said = mistake(run, TEXT.replace("[1]", loads))
     assert said.startswith("sweep.loads: ")
-    assert f"should be a list, as in [{loads}]" in said
+    assert f"should be a list: write loads = [{loads}]" in said
 
 
 ENDLESS = {
@@ -139,7 +139,7 @@ def test_bytes_that_are_no_text_are_refused_where_they_are_no_value(run):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["sweep.loads=1,2"], "should be a list, as in [1]"),
+        (["sweep.loads=1,2"], "should be a list: write loads = [1]"),
         (["mesh.file=3"], "mesh.file: found 3"),
         (["mesh.file="], "should give a value"),
         (["start.seed=1,,2"], "should give a value"),

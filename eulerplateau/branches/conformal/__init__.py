@@ -8,6 +8,9 @@
                    frames.py and rod_term.py
     films.py       the film at a load, a twist ratio and a link: what is asked for
     pinched.py     the flat eight, where they end
+    touching.py    films whose strands touch: held apart, and the way from one to another
+    contact_eight.py  the twisted eight of a loop with a diameter: what is asked for
+    contact_limits.py the loads between which it touches in one point
 
 What is exact about loops and films is in exact/conformal; continuation is that of meshes.
 """

@@ -5,6 +5,11 @@ from .by_writhe import (
     films_by_writhe as films_by_writhe,
     stiffness as stiffness,
 )
+from .contact_eight import ThickEight as ThickEight, thick_eight as thick_eight
+from .contact_limits import (
+    opening_load as opening_load,
+    splitting_load as splitting_load,
+)
 from .curved import NoFilmError as NoFilmError
 from .curved_family import CurvedFamily as CurvedFamily
 from .family import SmoothFamily as SmoothFamily, smooth_family as smooth_family
@@ -15,3 +20,4 @@ from .films import (
 )
 from .pinched import PinchedEight as PinchedEight, pinched_eight as pinched_eight
 from .resolution import in_basis as in_basis, resolved as resolved, tail as tail
+from .touching import TouchingFamily as TouchingFamily

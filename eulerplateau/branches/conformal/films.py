@@ -280,12 +280,17 @@ def _measured(point: BranchPoint) -> RodFilm:
 
 def _mirror_image(found: RodFilm) -> RodFilm:
     """Return the mirror image in the plane z = 0, of a rod turned the other way."""
-    basis, mirrored = found.film.basis, found.film.coefficients.copy()
-    mirrored[basis.slices[2]] *= -1
     return replace(
         found,
-        film=replace(found.film, coefficients=mirrored),
+        film=mirrored(found.film),
         link=-found.link,
         writhe=-found.writhe,
         twist_moment=-found.twist_moment,
     )
+
+
+def mirrored(film: ConformalFilm) -> ConformalFilm:
+    """Return the mirror image of a film in the plane z = 0."""
+    coefficients = film.coefficients.copy()
+    coefficients[film.basis.slices[2]] *= -1
+    return replace(film, coefficients=coefficients)

@@ -17,9 +17,11 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.conformal import (
     Basis,
+    Crossing,
     Curve,
     bending_gradient,
     bending_hessian,
+    crossing,
     length_gradient,
     length_hessian,
     loop_length,
@@ -51,6 +53,11 @@ class SmoothLoop:
         """Wr: its even part by all pairs of edges of a polygon on the loop."""
         found = writhe_modulo_two(self.curve)
         return found + 2 * round((polygon_writhe(self.curve.x) - found) / 2)
+
+    @cached_property
+    def crossing(self) -> Crossing:
+        """Where the strands of its waist are nearest."""
+        return crossing(self.basis, self.coefficients)
 
 
 @dataclass(frozen=True)

@@ -61,6 +61,11 @@ from .second_variation import (
     morse_index as morse_index,
     spectrum as spectrum,
 )
+from .strands import (
+    Crossing as Crossing,
+    crossing as crossing,
+    nearest_strands as nearest_strands,
+)
 from .writhe import (
     writhe_gradient as writhe_gradient,
     writhe_hessian as writhe_hessian,

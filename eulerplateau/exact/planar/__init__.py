@@ -1,8 +1,9 @@
 """Exact planar films bounded by an elastic loop, by elliptic functions (docs/planar.md).
 
-    film.py      `planar_film` at any tension, and `thresholds` between its regimes
+    film.py      `planar_film` at any tension; limits.py: `thresholds` between its regimes
     elastica.py  one solution of the shape equation; halves.py: half a lobe of it
     buckled.py   loops without contact; contact.py: in one point, or along a line
+    thickness.py which diameters a loop may have, and where it is too thick
 
 A film knows its energy, its area, and its curvature and position at any arc length.
 """

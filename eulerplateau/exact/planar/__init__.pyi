@@ -1,8 +1,11 @@
 from .film import (
-    LOBES as LOBES,
     PlanarFilm as PlanarFilm,
     Regime as Regime,
-    Thresholds as Thresholds,
     planar_film as planar_film,
+)
+from .limits import (
+    LOBES as LOBES,
+    Thresholds as Thresholds,
     thresholds as thresholds,
 )
+from .thickness import TooThickError as TooThickError

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from functools import cache
 from math import pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.checks import finite, whole_number
-from eulerplateau.exact.planar.buckled import buckled, excess, sigma_buckling
+from eulerplateau.exact.checks import finite
+from eulerplateau.exact.planar.buckled import buckled, excess
 from eulerplateau.exact.planar.contact import (
+    WIDEST,
     Touching,
     at_first_contact,
     at_line_contact,
@@ -26,8 +26,12 @@ from eulerplateau.exact.planar.halves import (
     Points,
     TouchingHalf,
 )
-
-LOBES = range(2, 13)
+from eulerplateau.exact.planar.limits import checked_lobes
+from eulerplateau.exact.planar.thickness import (
+    TooThickError,
+    checked_diameter,
+    is_too_thick,
+)
 
 
 class Regime(Enum):
@@ -38,15 +42,13 @@ class Regime(Enum):
     POINT_CONTACT = "point-contact"
     LINE_CONTACT = "line-contact"
 
+    @property
+    def contact(self) -> str:
+        """Where the loop touches itself: "free" (nowhere), in a "point", along a "line"."""
+        return self.value.removesuffix("-contact") if self in _IN_CONTACT else "free"
 
-@dataclass(frozen=True)
-class Thresholds:
-    """The loads sigma L^3 / alpha at which the n-lobed film changes its regime."""
 
-    lobes: int
-    sigma_buckling: float
-    sigma_contact: float
-    sigma_line_contact: float
+_IN_CONTACT = (Regime.POINT_CONTACT, Regime.LINE_CONTACT)
 
 
 @dataclass(frozen=True, repr=False)
@@ -72,6 +74,12 @@ class PlanarFilm:
         The multiplier of length in 2 kappa'' + kappa^3 - beta_hat kappa - tension = 0.
     contact_length : float
         Length of the line along which each lobe's sides touch; 0 without line contact.
+        Of two lobes the lines are one, twice as long.
+    contact_force : float
+        d energy / d diameter, in alpha/L^2: the sum over the contacts of the forces, each
+        > 0, by which the strands push each other apart. Without contact 0.
+    diameter : float
+        Of the loop, in L; 0 for a loop without thickness. The film spans the centreline.
     half_lobe : HalfLobe
         The loop from a tip to the middle between two lobes.
     """
@@ -85,6 +93,8 @@ class PlanarFilm:
     kappa_min: float
     beta_hat: float
     contact_length: float
+    contact_force: float
+    diameter: float
     half_lobe: HalfLobe
 
     def __repr__(self) -> str:
@@ -124,28 +134,7 @@ class PlanarFilm:
         )
 
 
-def thresholds(lobes: int) -> Thresholds:
-    """Return the thresholds of the film with n lobes (paper, tab:contact).
-
-    Parameters
-    ----------
-    lobes : int
-        n, from 2 to 12.
-
-    Returns
-    -------
-    Thresholds
-        Tensions sigma L^3 / alpha, to 12 digits or more.
-
-    Raises
-    ------
-    SpecError
-        If `lobes` is no such number.
-    """
-    return _thresholds(_checked_lobes(lobes))
-
-
-def planar_film(lobes: int, tension: float) -> PlanarFilm:
+def planar_film(lobes: int, tension: float, diameter: float | None = None) -> PlanarFilm:
     """Return the planar equilibrium with n lobes, by elliptic functions (docs/planar.md).
 
     Up to the buckling threshold that is the disk; beyond the contact threshold the loop
@@ -157,6 +146,8 @@ def planar_film(lobes: int, tension: float) -> PlanarFilm:
         n, from 2 to 12.
     tension : float
         sigma_hat = sigma L^3 / alpha, finite and not negative.
+    diameter : float, optional
+        That of the loop, in L, above 0 and at most 0.1; by default it has no thickness.
 
     Returns
     -------
@@ -167,33 +158,41 @@ def planar_film(lobes: int, tension: float) -> PlanarFilm:
     ------
     SpecError
         If an argument is no such number.
+    TooThickError
+        If the loop's curvature would exceed 2/d.
     """
-    lobes, tension = _checked_lobes(lobes), finite("tension", tension)
-    limits = _thresholds(lobes)
+    lobes, tension = checked_lobes(lobes), finite("tension", tension)
+    diameter = checked_diameter(diameter)
+    film = _film(lobes, tension, diameter)
+    if is_too_thick(film.kappa_max, film.kappa_min, diameter):
+        sharpest = max(film.kappa_max, -film.kappa_min)
+        raise _too_thick(diameter, f"its curvature is {sharpest:.6g}")
+    return film
+
+
+def _film(lobes: int, tension: float, diameter: float) -> PlanarFilm:
+    """Return the film, however sharply its loop is bent."""
     if excess(lobes, tension) <= 0:
-        return _disk(lobes, tension)
-    if tension < limits.sigma_contact:
-        return _buckled(lobes, tension)
-    if tension < limits.sigma_line_contact:
-        return _touching(lobes, tension, Regime.POINT_CONTACT, touching_at(lobes, tension))
-    size = (limits.sigma_line_contact / tension) ** (1 / 3)
-    parts = at_line_contact(lobes).scaled(size)
-    return _touching(lobes, tension, Regime.LINE_CONTACT, parts)
+        return _disk(lobes, tension, diameter)
+    width = diameter * tension ** (1 / 3)
+    if tension < at_first_contact(lobes, min(width, WIDEST)).lobe.sigma:
+        return _buckled(lobes, tension, diameter)
+    if width > WIDEST:
+        raise _too_thick(diameter, "its curvature would be larger, were it to touch itself")
+    opening = at_line_contact(lobes, width)
+    if tension < opening.lobe.sigma:
+        parts = touching_at(lobes, tension, width)
+        return _touching(lobes, tension, diameter, Regime.POINT_CONTACT, parts)
+    parts = opening.scaled((opening.lobe.sigma / tension) ** (1 / 3))
+    return _touching(lobes, tension, diameter, Regime.LINE_CONTACT, parts)
 
 
-@cache
-def _thresholds(lobes: int) -> Thresholds:
-    contact = at_first_contact(lobes).lobe.sigma
-    return Thresholds(
-        lobes, sigma_buckling(lobes), contact, at_line_contact(lobes).lobe.sigma
-    )
+def _too_thick(diameter: float, why: str) -> TooThickError:
+    limit = f"a loop of diameter {diameter:g} L bends to 2/d = {2 / diameter:g} / L at most"
+    return TooThickError(f"too_thick: {limit}; {why}")
 
 
-def _checked_lobes(lobes: int) -> int:
-    return whole_number("lobes", lobes, LOBES[0], LOBES[-1])
-
-
-def _disk(lobes: int, tension: float) -> PlanarFilm:
+def _disk(lobes: int, tension: float, diameter: float) -> PlanarFilm:
     area, kappa = 1 / (4 * pi), 2 * pi
     return PlanarFilm(
         lobes=lobes,
@@ -205,11 +204,13 @@ def _disk(lobes: int, tension: float) -> PlanarFilm:
         kappa_min=kappa,
         beta_hat=kappa**2 - tension / kappa,
         contact_length=0.0,
+        contact_force=0.0,
+        diameter=diameter,
         half_lobe=CircleHalf(lobes),
     )
 
 
-def _buckled(lobes: int, tension: float) -> PlanarFilm:
+def _buckled(lobes: int, tension: float, diameter: float) -> PlanarFilm:
     lobe = at_first_contact(lobes).lobe
     shape = buckled(lobes, tension, 0.9 * lobe.imaginary2 / lobe.mean**2)
     energy = 2 * lobes * shape.energy(shape.half_period)
@@ -223,6 +224,8 @@ def _buckled(lobes: int, tension: float) -> PlanarFilm:
         kappa_min=shape.mean - shape.amplitude,
         beta_hat=shape.beta,
         contact_length=0.0,
+        contact_force=0.0,
+        diameter=diameter,
         half_lobe=BuckledHalf(lobes, shape),
     )
 
@@ -236,30 +239,33 @@ def _curved_energy(lobes: int, parts: Touching) -> float:
     return 2 * lobes * float(energy)
 
 
-def _touching(lobes: int, tension: float, regime: Regime, parts: Touching) -> PlanarFilm:
+def _touching(
+    lobes: int, tension: float, diameter: float, regime: Regime, parts: Touching
+) -> PlanarFilm:
     """Return the film with the given curved parts and lines between them."""
-    lobe, neck = parts.lobe, parts.neck
-    lowest = lobe.mean - lobe.amplitude
-    if parts.lobe_length < lobe.half_period:
-        lowest = float(lobe.curvature(parts.lobe_length))
-    if neck is not None:
-        lowest = min(lowest, neck.mean - neck.amplitude)
-    energy, beta, line = _curved_energy(lobes, parts), lobe.beta, 0.0
+    curved = parts
+    growth, beta, line = 1.0, parts.lobe.beta, 0.0
     if regime is Regime.LINE_CONTACT:
-        beta, line = 0.0, 1 / (2 * lobes) - parts.lobe_length - parts.neck_length
+        beta = 0.0 - tension * diameter / 2
+        line = 1 / (2 * lobes) - parts.lobe_length - parts.neck_length
         # One shape of every size: products of a tiny one's numbers would overflow.
-        alike = at_line_contact(lobes)
-        growth = (tension / alike.lobe.sigma) ** (1 / 3)
-        energy = growth * _curved_energy(lobes, alike)
+        curved = at_line_contact(lobes, diameter * tension ** (1 / 3))
+        growth = (tension / curved.lobe.sigma) ** (1 / 3)
+    # Along a line the strands push against the film's tension, at its ends as in a point.
+    force = lobes * (growth**2 * curved.shear_jump + tension * line)
+    energy = growth * _curved_energy(lobes, curved)
+    energy += (force + lobes * tension * line) * diameter / 2
     return PlanarFilm(
         lobes=lobes,
         tension=tension,
         regime=regime,
         energy=energy,
-        area=(energy - beta) / (3 * tension),
-        kappa_max=lobe.mean + lobe.amplitude,
-        kappa_min=lowest,
+        area=(energy - beta + force * diameter) / (3 * tension),
+        kappa_max=parts.kappa_max,
+        kappa_min=parts.kappa_min,
         beta_hat=beta,
         contact_length=line,
+        contact_force=force,
+        diameter=diameter,
         half_lobe=TouchingHalf(lobes, parts, line),
     )

@@ -20,7 +20,7 @@ from typing import Any
 
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh import write_whole
-from eulerplateau.runs.folder import read_summary
+from eulerplateau.runs.run_files import read_summary
 
 _LIST = "ensemble.json"
 _MARK = {"program": "eulerplateau"}

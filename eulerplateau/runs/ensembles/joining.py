@@ -16,10 +16,10 @@ from eulerplateau.errors import (
 )
 from eulerplateau.mesh import write_whole
 from eulerplateau.runs.ensembles.folder import Place
-from eulerplateau.runs.folder import read_summary
 from eulerplateau.runs.kinds import Kind
 from eulerplateau.runs.record import kind_of
 from eulerplateau.runs.rows import Record, columns
+from eulerplateau.runs.run_files import read_summary
 from eulerplateau.runs.spec import FILE_KEYS, leaves
 from eulerplateau.runs.table import read_rows, table_content
 

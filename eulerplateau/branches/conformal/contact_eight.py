@@ -1,0 +1,253 @@
+"""The twisted eight of a loop with a diameter, whose strands touch in one point.
+
+It is the film whose waist is held at the diameter, as long as the strands push each other
+and touch where they are nearest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from eulerplateau.branches.conformal.curved import NoFilmError
+from eulerplateau.branches.conformal.films import checked, mirrored
+from eulerplateau.branches.conformal.touching import (
+    FIRST,
+    Touching,
+    TouchingFamily,
+    crowding,
+    settled,
+    way,
+)
+from eulerplateau.errors import SpecError
+from eulerplateau.exact import finite
+from eulerplateau.exact.conformal import (
+    TWISTED,
+    ConformalFilm,
+    make_basis,
+    nearest_strands,
+)
+
+THICKEST = 0.1
+# A film to begin with, where Newton's method starts (to be converged): the first harmonics
+# of x, y and z, beta and -F, and the crossing angle.
+_BEGIN: Mapping[str, float] = {
+    "load": 1700.0,
+    "twist_ratio": 0.0,
+    "link": 0.0,
+    "diameter": 0.1,
+}
+_COEFFICIENTS = (
+    (0.1722, 0.0311, 0.0066, 0.0010, -0.0002, -0.0002, -0.0001),
+    (0.0667, 0.0213, 0.0054, 0.0008, -0.0002, -0.0002, -0.0001),
+    (-0.0285, -0.0076, -0.0015, -0.0001, 0.0001, 0.0001, 0.0001),
+)
+_TENSIONS, _ANGLE = (-30.0, 9.0), 36.0
+# Harmonics on the way, per logarithm of the diameter and at most; the most in the end.
+_HARMONICS, _WAY, _MOST = 21, 96, 324
+# A point force leaves errors of O(K^-3): relative change of the energy that is small enough
+# from one number of harmonics to the next, and part of it that is left then.
+_ENOUGH, _LEFT = 1e-9, 1 / (1.5**3 - 1)
+_RESOLVED = 1e-7
+# Points of the loop that are nearer than this part of the diameter less overlap.
+_TOUCHES = 1e-9
+
+
+@dataclass(frozen=True)
+class ThickEight:
+    """A twisted eight in contact; lengths in L, energies in alpha / L.
+
+    Attributes
+    ----------
+    film : its loop, whose energy is that of film and bending
+    energy : of film, bending and twist
+    contact_force : F = dE/dd, in alpha / L^2
+    crossing_angle : the acute angle between the tangents where they touch, degrees
+    smallest_gap : of all points of the tube's centre line, less the diameter
+    convexity : the least second derivative of the strands' distance, times the diameter
+    n_unstable : the Morse index, the strands in contact
+    energy_error : relative, what is left from truncation, roughly
+    """
+
+    film: ConformalFilm
+    diameter: float
+    twist_ratio: float
+    link: float
+    energy: float
+    twist_energy: float
+    writhe: float
+    twist_moment: float
+    contact_force: float
+    crossing_angle: float
+    smallest_gap: float
+    convexity: float
+    n_unstable: int
+    energy_error: float
+
+    @property
+    def status(self) -> str:
+        """Whether it is an equilibrium of a loop of this diameter, or why not."""
+        _, x1, x2 = self.film.curve
+        bends = np.linalg.norm(np.cross(x1, x2), axis=1) / np.linalg.norm(x1, axis=1) ** 3
+        if bends.max() > 2 / self.diameter:
+            return "too_thick"
+        if self.contact_force <= 0:
+            return "opens"
+        if self.convexity <= 0 or self.smallest_gap < -_TOUCHES * self.diameter:
+            return "splits"
+        return "converged" if self.energy_error < _RESOLVED else "unresolved"
+
+    @property
+    def refusal(self) -> str | None:
+        """What is wrong with it and what to do, if it is no equilibrium."""
+        reasons = {
+            "too_thick": "the loop bends more than its thickness allows: take a smaller "
+            "diameter",
+            "opens": "the eight opens: its strands would have to pull each other with "
+            f"{-self.contact_force:.4g} alpha/L^2; take a higher load or a smaller "
+            "diameter",
+            "splits": "one point of contact is not enough: strands would overlap beside "
+            "it; take a lower load, or a mesh",
+        }
+        return reasons.get(self.status)
+
+    def numbers(self) -> dict[str, float | int | str]:
+        """Return what is said of it, by names; of no equilibrium only why it is none."""
+        refusal = self.refusal
+        if refusal is not None:
+            return {"diameter": self.diameter, "status": self.status, "reason": refusal}
+        return {
+            "energy": self.energy,
+            "area": self.film.area,
+            "bending": self.film.bending,
+            "twist_energy": self.twist_energy,
+            "writhe": self.writhe,
+            "twist_moment": self.twist_moment,
+            "waist": self.diameter,
+            "contact_force": self.contact_force,
+            "crossing_angle": self.crossing_angle,
+            "smallest_gap": self.smallest_gap,
+            "n_unstable": self.n_unstable,
+            "energy_error": self.energy_error,
+            "residual": self.film.residual,
+            "status": self.status,
+        }
+
+
+def thick_eight(
+    load: float, diameter: float, twist_ratio: float = 0.0, link: float = 0.0
+) -> ThickEight:
+    """Return the twisted eight of a loop with a diameter, wound the way it was turned.
+
+    Parameters
+    ----------
+    load : float, sigma_hat = sigma L^3 / alpha, positive
+    diameter : float, in L, up to 0.1
+    twist_ratio : float, C / B; with 0 the link must be 0
+    link : float, Lk, in turns
+
+    Raises
+    ------
+    SpecError : for wrong numbers
+    NoFilmError : where Newton's method finds no film on the way there
+    """
+    checked(load, twist_ratio, link)
+    checked_diameter(diameter)
+    if link < 0:
+        return _mirror_image(thick_eight(load, diameter, twist_ratio, -link))
+    values = {"load": load, "twist_ratio": twist_ratio, "link": link, "diameter": diameter}
+    coarse, fine = refined(touching(values))
+    return _measured(coarse, fine)
+
+
+def checked_diameter(diameter: float) -> float:
+    """Return a diameter; raises SpecError unless it lies between 0 and THICKEST."""
+    if not 0 < finite("diameter", diameter) <= THICKEST:
+        problem = f"found {diameter:g}; should be above 0, up to {THICKEST:g}"
+        raise SpecError("diameter", problem)
+    return diameter
+
+
+def touching(values: Mapping[str, float]) -> Touching:
+    """Return the film held at a diameter, by few harmonics; raises NoFilmError if none is.
+
+    values : "load", "twist_ratio", "link" and "diameter"
+    """
+    harmonics = min(_WAY, math.ceil(_HARMONICS * math.log(1 / values["diameter"])))
+    untwisted = {**values, "twist_ratio": 0.0, "link": 0.0}
+    return reached(reached(_first(harmonics), untwisted), values)
+
+
+def reached(start: Touching, values: Mapping[str, float], step: float = FIRST) -> Touching:
+    """Return the film at other values; raises NoFilmError if it is not found."""
+    *_, found = start, *way(start, values, step)
+    if found.values != values:
+        opens = "; it opens before" if found.force < 0 else ""
+        problem = "Newton's method finds no film with one point of contact"
+        raise NoFilmError(f"{problem} at sigma_hat = {values['load']:g}{opens}")
+    return found
+
+
+def refined(film: Touching) -> tuple[Touching, Touching]:
+    """Return a film by more and more harmonics, the last two."""
+    coarse = film
+    while (harmonics := 3 * film.basis.harmonics // 2) <= _MOST:
+        finer = film.in_basis(make_basis(harmonics, TWISTED, film.basis.crowding))
+        if finer is None:
+            break
+        coarse, film = film, finer
+        if abs(coarse.energy / film.energy - 1) < _ENOUGH:
+            break
+    return coarse, film
+
+
+@lru_cache(maxsize=4)
+def _first(harmonics: int) -> Touching:
+    """Return the film to begin with."""
+    basis = make_basis(harmonics, TWISTED, crowding(_BEGIN["diameter"], _ANGLE))
+    c = np.zeros(basis.size)
+    for part, begin in zip(basis.slices, _COEFFICIENTS, strict=True):
+        c[part][: len(begin)] = begin
+    family = TouchingFamily(basis, _BEGIN)
+    found = settled(Touching(family, family.unknowns.x(c), np.array(_TENSIONS), 0))
+    if found is None:
+        raise ArithmeticError("no twisted eight found to begin with")
+    return found
+
+
+def _measured(coarse: Touching, fine: Touching) -> ThickEight:
+    """Return a film with all its numbers, from two numbers of harmonics."""
+    family, point, values = fine.family, fine.point, fine.values
+    film, twist = family.film(point), family.twist(point.value)
+    change = abs(coarse.energy / fine.energy - 1) if coarse is not fine else math.inf
+    return ThickEight(
+        film=film,
+        diameter=values["diameter"],
+        twist_ratio=twist.ratio,
+        link=twist.link,
+        energy=fine.energy,
+        twist_energy=twist.twist_energy(fine.x),
+        writhe=twist.writhe(fine.x),
+        twist_moment=twist.moment(fine.x),
+        contact_force=fine.force,
+        crossing_angle=fine.crossing.angle,
+        smallest_gap=nearest_strands(film.curve, values["diameter"]) - values["diameter"],
+        convexity=fine.convexity,
+        n_unstable=family.in_space(point).n_unstable,
+        energy_error=_LEFT * change,
+    )
+
+
+def _mirror_image(found: ThickEight) -> ThickEight:
+    """Return the mirror image, of a rod turned the other way."""
+    return replace(
+        found,
+        film=mirrored(found.film),
+        link=-found.link,
+        writhe=-found.writhe,
+        twist_moment=-found.twist_moment,
+    )

@@ -75,19 +75,15 @@ def test_meshes_converge_to_the_film_without_one(
 
 
 @pytest.mark.slow
-def test_shifting_the_mesh_along_the_loop_changes_what_its_error_is_at_most() -> None:
+@pytest.mark.parametrize("edges", [60, 120])
+def test_where_vertices_lie_at_the_contact_hardly_matters(edges: int) -> None:
     """Strands touch at vertices, between them, or in the middle of edges."""
-    exact = thick_eight(1700.0, 0.02)
-
-    def spread(edges: int) -> FloatArray:
-        mesh = round_disk(edges)
-        rows = [off(eight_on(mesh, exact, shift), exact) for shift in (0.0, 0.3, 0.5)]
-        assert {row.n_unstable for row in rows} == {exact.n_unstable}
-        return np.ptp([row.numbers for row in rows], axis=0)
-
-    coarse, fine = spread(60), spread(120)
-    # An error of second order is 4 times as small.
-    assert (fine < 0.3 * coarse).all()
+    exact, mesh = thick_eight(1700.0, 0.02), round_disk(edges)
+    rows = [off(eight_on(mesh, exact, shift), exact) for shift in (0.0, 0.3, 0.5)]
+    assert {row.n_unstable for row in rows} == {exact.n_unstable}
+    errors = np.array([row.numbers for row in rows])
+    # The same error, of the loop's bends and of its film, not of the place of contact.
+    assert (np.ptp(errors, axis=0) < 0.05 * np.abs(errors).min(axis=0)).all()
 
 
 @pytest.mark.slow

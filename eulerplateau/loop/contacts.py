@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from eulerplateau.arrays import BoolArray, FloatArray
-from eulerplateau.loop.energy import LoopEnergy
 from eulerplateau.loop.gaps import Gaps
-from eulerplateau.loop.held_gaps import HeldGaps
-from eulerplateau.loop.loop import Loop
-from eulerplateau.loop.strands import strands_of
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,11 +53,6 @@ class Contacts:
     def places(self) -> Gaps:
         """The gaps that are closed."""
         return Gaps(self.s, self.t, self.at_a_point)
-
-    def held(self, energy: LoopEnergy, loop: Loop) -> LoopEnergy:
-        """Return an energy of the loop with these gaps kept closed."""
-        kept = HeldGaps(energy.constraint, strands_of(loop), self.places)
-        return replace(energy, constraint=kept)
 
     @property
     def force(self) -> float:

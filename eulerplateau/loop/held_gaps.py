@@ -8,9 +8,10 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.energy import Constraint
+from eulerplateau.loop.energy import Constraint, LoopEnergy
 from eulerplateau.loop.gaps import Gaps
-from eulerplateau.loop.strands import Strands
+from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.strands import Strands, strands_of
 from eulerplateau.loop.turns import EdgeTurns
 
 _STEPS = 30
@@ -111,3 +112,8 @@ class HeldGaps:
         shares = cho_solve(cho_factor(rows @ moved), excess)
         closing: FloatArray = (moved @ shares).reshape(shape)
         return closing
+
+
+def with_gaps_held(energy: LoopEnergy, loop: Loop, gaps: Gaps) -> LoopEnergy:
+    """Return an energy of a loop that has a diameter, with some gaps kept closed."""
+    return replace(energy, constraint=HeldGaps(energy.constraint, strands_of(loop), gaps))

@@ -116,7 +116,8 @@ class Strands:
         )
         rows = _rows(looked_for, 6)
         least = Gaps(rows[:, 3], rows[:, 4], np.zeros(len(rows), dtype=bool))
-        along = (rows[:, 5] < _PARTING) | ~self.unlike(least, beside, ALONG)
+        along: BoolArray = rows[:, 5] < _PARTING
+        along |= ~self.unlike(least, beside, ALONG)
         rows, pairs = rows[along & (rows[:, 5] > -np.inf)], pairs[crossing]
         rows = rows[of_one_strand(self.knots, rows[:, 0], rows[:, 1], beside)]
         slides = np.arange(len(pairs) + len(rows)) < len(pairs)
@@ -133,9 +134,9 @@ class Strands:
             close: BoolArray = np.minimum(off, whole - off) < reach
             return close
 
-        alike = near(gaps.s, others.s) & near(gaps.t, others.t)
-        alike |= near(gaps.s, others.t) & near(gaps.t, others.s)
-        unlike: BoolArray = ~alike.any(axis=1)
+        same = near(gaps.s, others.s) & near(gaps.t, others.t)
+        turned = near(gaps.s, others.t) & near(gaps.t, others.s)
+        unlike: BoolArray = np.logical_not(np.any(same | turned, axis=1))
         return unlike
 
     def distinct(self, gaps: Gaps) -> BoolArray:

@@ -78,7 +78,8 @@ def solve(
     shape, known = _start(problem, start)
     if tensions is not None:
         known = _tensions(problem, tensions)
-    minimise = _named(solver, problem)
+    minimise = _named(solver)
+    _check_knows_contact(problem, solver)
     show = (lambda x_loop: None) if observe is None else observe
     with one_thread():
         return minimise(problem, _load(load), shape, known, _limit(max_iterations), show)
@@ -138,7 +139,8 @@ def follow_steps(
     shape, known = _start(problem, start)
     if tensions is not None:
         known = _tensions(problem, tensions)
-    return _swept(steps, shape, known, _named(solver, problem), _limit(max_iterations))
+    _check_knows_contact(problem, solver)
+    return _swept(steps, shape, known, _named(solver), _limit(max_iterations))
 
 
 def check_values(problem: Problem, parameter: str, values: Iterable[float]) -> list[float]:
@@ -173,13 +175,16 @@ def _swept(
             shape, tensions = found.shape, found.tensions
 
 
-def _named(solver: str, problem: Problem) -> Minimise:
-    if solver not in SOLVERS:
-        known = " or ".join(repr(name) for name in SOLVERS)
-        raise SpecError("solver", f"found {solver!r}; should be {known}")
+def _check_knows_contact(problem: Problem, solver: str) -> None:
     if problem.loop.diameter is not None and solver != "newton":
         found = f"found {solver!r}, which knows no contact; a loop with a diameter"
         raise SpecError("solver", f"{found} takes 'newton'")
+
+
+def _named(solver: str) -> Minimise:
+    if solver not in SOLVERS:
+        known = " or ".join(repr(name) for name in SOLVERS)
+        raise SpecError("solver", f"found {solver!r}; should be {known}")
     module = import_module(f"eulerplateau.solvers.{SOLVERS[solver]}")
     return cast(Minimise, module.minimise)
 

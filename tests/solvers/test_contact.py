@@ -233,3 +233,21 @@ print(*sys.modules)
     ours = [name for name in done.stdout.split() if name.startswith("eulerplateau")]
     assert "eulerplateau.solvers.newton" in ours
     assert [name for name in ours if any(part in name for part in parts)] == []
+
+
+def welded(link: float, diameter: float, start: Equilibrium | None = None) -> Equilibrium:
+    problem = Problem(disk(), "area", twist_ratio=2 / 3, link=link, diameter=diameter)
+    return solve(problem, 2000.0, crossed(disk()) if start is None else start)
+
+
+def test_a_rod_that_resists_twist_touches_itself_and_does_the_work_it_should() -> None:
+    found = welded(0.7, 0.03)
+    assert found.is_minimum
+    assert found.contacts is not None
+    assert found.contacts.force > 1.0
+    problem = Problem(disk(), "area", twist_ratio=2 / 3, link=0.7)
+    moment = problem.loop.terms["twist"].columns(found.shape.x_loop)["twist_moment"]
+    wide, narrow = (welded(0.7, 0.03 + h, found).energy for h in (2e-4, -2e-4))
+    assert (wide - narrow) / 4e-4 == pytest.approx(found.contacts.force, rel=1e-4)
+    more, less = (welded(0.7 + h, 0.03, found).energy for h in (5e-3, -5e-3))
+    assert (more - less) / 1e-2 == pytest.approx(2 * np.pi * moment, rel=1e-3)

@@ -97,10 +97,11 @@ def validate(data: Mapping[str, Any], model: type[Model], source: str) -> Model:
 
 
 def _plain(value: Any) -> Any:
-    """Return arrays as lists, models as mappings, and anything else as a string."""
+    """Return arrays as lists, models as what they were given, anything else as a string."""
     if hasattr(value, "tolist"):
         return value.tolist()
-    return value.model_dump() if isinstance(value, BaseModel) else str(value)
+    given = isinstance(value, BaseModel)
+    return value.model_dump(exclude_unset=True) if given else str(value)
 
 
 def _spec_error(

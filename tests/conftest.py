@@ -28,6 +28,7 @@ SHARING = ("test_exploration", "test_special", "test_continuation")
 # The longest files, so that on several cores none is left over at the end.
 LONGEST = (
     "test_docs",
+    "test_site",
     *SHARING,
     "test_comparison",
     "test_extreme_area",

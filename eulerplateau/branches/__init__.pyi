@@ -19,11 +19,11 @@ from .films import (
 )
 from .locus import (
     End as End,
-    Special as Special,
     follow_locus as follow_locus,
     locus_start as locus_start,
     special_at as special_at,
 )
+from .locus_between import Resolution as Resolution, Special as Special
 from .locus_point import LocusPoint as LocusPoint
 from .point import (
     BranchPoint as BranchPoint,

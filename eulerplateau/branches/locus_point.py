@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from scipy.linalg import LinAlgError, polar
@@ -24,7 +24,7 @@ from scipy.linalg import LinAlgError, polar
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.normal_form import Neighbourhood, bordered
-from eulerplateau.branches.point import StepControl
+from eulerplateau.branches.point import Motion, StepControl
 from eulerplateau.interruption import heed
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import TangentModel, tangent_model
@@ -37,26 +37,6 @@ _NEXT_TO = 1e-6
 
 
 @dataclass(frozen=True)
-class Motion:
-    """A displacement (n, d) with changes of both parameters (2,)."""
-
-    displacement: FloatArray
-    rates: FloatArray
-
-    def __mul__(self, factor: float) -> Motion:
-        """Return it times a number."""
-        return Motion(factor * self.displacement, factor * self.rates)
-
-    def __add__(self, other: Motion) -> Motion:
-        """Return the sum of two."""
-        return Motion(self.displacement + other.displacement, self.rates + other.rates)
-
-    def __sub__(self, other: Motion) -> Motion:
-        """Return the difference of two."""
-        return self + other * -1.0
-
-
-@dataclass(frozen=True)
 class Course:
     """What a curve is a curve of.
 
@@ -65,11 +45,15 @@ class Course:
     second : name of the second parameter; the family knows the first
     controls : windows, units and least values of both; steps are the first one's
     symmetric : whether it is one of bifurcations that a symmetry keeps; else of folds
+    breaks : names of symmetries
+        Of bifurcations, those that their mode breaks; of folds that one of these left,
+        those that the second parameter has taken from it.
     """
 
     second: str
     controls: tuple[StepControl, StepControl]
     symmetric: bool
+    breaks: tuple[str, ...] = ()
 
     @property
     def units(self) -> FloatArray:
@@ -110,10 +94,7 @@ class LocusPoint:
     ----------
     family : at the second parameter's value
     values : (2,) float, of both parameters
-    modes : (m, k) float, orthonormal null vectors, in the model's coordinates
-    coefficient : float
-        Of a bifurcation a_3 (supercritical where positive), of a fold a_2, whose sign is
-        the mode's: see normal_form.py.
+    near : loops along the modes that are lost
     steepness : the gradient of the mean of phi^T H phi, in the product of arclength
     direction : of the curve, of unit arclength
     arclength : float, from the start, either way
@@ -125,8 +106,7 @@ class LocusPoint:
     family: Family
     model: TangentModel
     values: FloatArray
-    modes: FloatArray
-    coefficient: float
+    near: Neighbourhood
     steepness: Motion
     direction: Motion
     corrections: int
@@ -143,6 +123,19 @@ class LocusPoint:
     def energy(self) -> LoopEnergy:
         """The energy of which it is an equilibrium."""
         return self.family.energy(float(self.values[0]))
+
+    @property
+    def modes(self) -> FloatArray:
+        """The orthonormal null vectors (m, k), in the model's coordinates."""
+        return self.near.modes
+
+    @cached_property
+    def coefficient(self) -> float:
+        """Of a bifurcation a_3, supercritical where positive; of a fold a_2.
+
+        Its sign is the mode's: see normal_form.py. Raises LinAlgError as that does.
+        """
+        return self.near.cubic() if self.course.symmetric else self.near.quadratic()
 
     @property
     def others(self) -> FloatArray:
@@ -219,14 +212,10 @@ class Trial:
         """Return the point that this is, heading as `normal`; raises LinAlgError."""
         course, model = self.course, self.model
         near = Neighbourhood(self.energy, model, self.modes)
-        third = near.third()
         names = self.family.parameter, course.second
         mixed = np.array([near.mixed(name) for name in names]) * course.units
-        row = np.append(third.mean(axis=1), mixed)
+        row = np.append(near.steepness(), mixed)
         steepness = course.motion(model, row)
-        coefficient = 0.5 * float(third[:, 0] @ self.modes[:, 0])
-        if course.symmetric:
-            coefficient = near.cubic(third[:, 0])
         null = np.linalg.qr(self.system(steepness).T, mode="complete")[0][:, -1]
         direction = course.motion(model, null[: len(row)])
         size = float(np.sqrt(course.dot(model, direction, direction)))
@@ -236,8 +225,7 @@ class Trial:
             family=self.family,
             model=model,
             values=self.values,
-            modes=self.modes,
-            coefficient=coefficient,
+            near=near,
             steepness=steepness,
             direction=direction * float(np.copysign(1 / size, ahead)),
             corrections=corrections,

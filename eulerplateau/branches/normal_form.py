@@ -23,12 +23,18 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers import TangentModel, tangent_model
+from eulerplateau.solvers import Directional, TangentModel, directional
 
 # Displacement, r.m.s. in L, between which differences are taken.
 _STEP = 5e-4
 # Projections that leave next to nothing of what they move along the tangent space.
-_PROJECTIONS = 3
+_PROJECTIONS = 2
+# |b.phi| / |b| below which b has no part along phi. Symmetric points reach 1e-8; folds on
+# these films have 0.1 and more.
+NO_PART = 1e-3
+# Part of the film's pull, or of all forces at the parameter's unit, below which what moves
+# the loop is rounding: a true film does not move a round one at all, nor does its twist.
+_IDLE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -44,21 +50,30 @@ class Neighbourhood:
     energy: LoopEnergy
     model: TangentModel
     modes: FloatArray
-    _known: dict[tuple[int, float], TangentModel] = field(default_factory=dict, repr=False)
+    _known: dict[tuple[int, float], Directional] = field(default_factory=dict, repr=False)
+    _pulls: dict[tuple[int, float], FloatArray] = field(default_factory=dict, repr=False)
 
-    def third(self) -> FloatArray:
-        """Return D3[phi, phi, .] of each mode, as columns (m, k)."""
-        numbers = range(self.modes.shape[1])
-        return np.column_stack([_extrapolated(self._third, number) for number in numbers])
+    def steepness(self) -> FloatArray:
+        """Return the mean over the modes of D3[phi, phi, .] (m,).
 
-    def cubic(self, third: FloatArray) -> float:
-        """Return a_3 of the first mode: positive where a pitchfork is supercritical.
-
-        third : (m,) float, D3[phi, phi, .]
+        The derivative of the mean of phi^T H phi: which way a curve goes on. Of the first
+        mode, whose coefficient asks for that anyway, to the step's fourth order.
         """
+        others = range(1, self.modes.shape[1])
+        changes = [_extrapolated(self._third), *(self._third(n, _STEP) for n in others)]
+        mean: FloatArray = np.mean(changes, axis=0)
+        return mean
+
+    def quadratic(self) -> float:
+        """Return a_2 of the first mode."""
+        return 0.5 * float(_extrapolated(self._third) @ self.modes[:, 0])
+
+    def cubic(self) -> float:
+        """Return a_3 of the first mode: positive where a pitchfork is supercritical."""
+        third = _extrapolated(self._third)
         force, still = third[:, None], np.zeros((self.modes.shape[1], 1))
         yielding, _ = bordered(self.model.hessian, self.modes, force, still)
-        fourth = _extrapolated(self._fourth, 0)
+        fourth = _extrapolated(self._fourth)
         return float(fourth[0]) / 6 - 0.5 * float(third @ yielding[:, 0])
 
     def mixed(self, parameter: str) -> float:
@@ -73,11 +88,11 @@ class Neighbourhood:
         """Return D3 (m,) along a mode, good to the step's second order."""
         return (self._pull(number, step) - self._pull(number, -step)) / (2 * step)
 
-    def _beside(self, number: int, step: float) -> TangentModel:
-        """Return the model at a loop along a mode; raises LinAlgError if there is none."""
+    def _beside(self, number: int, step: float) -> Directional:
+        """Return the second variation along a mode; raises LinAlgError if there is none."""
         if (number, step) not in self._known:
             x = self._moved(step * self.modes[:, number])
-            self._known[number, step] = tangent_model(self.energy, x)
+            self._known[number, step] = directional(self.energy, x)
         return self._known[number, step]
 
     def _moved(self, coefficients: FloatArray) -> FloatArray:
@@ -96,15 +111,16 @@ class Neighbourhood:
 
     def _pull(self, number: int, step: float) -> FloatArray:
         """Return H phi (m,) at a loop along a mode, in the coordinates here."""
-        beside = self._beside(number, step)
-        mode = beside.coefficients(self.model.displacement(self.modes[:, number]))
-        return self.model.coefficients(beside.displacement(beside.hessian @ mode))
+        if (number, step) not in self._pulls:
+            moved = self.model.displacement(self.modes[:, number])
+            pull = self._beside(number, step).pull(moved)
+            self._pulls[number, step] = self.model.slope(pull)
+        return self._pulls[number, step]
 
     def _work(self, number: int, step: float, parameter: str) -> FloatArray:
         """Return dg/dparameter (m,) at a loop along a mode, in the coordinates here."""
         beside = self._beside(number, step)
-        rate = beside.slope(self.energy.rate(parameter, beside.x))
-        return self.model.coefficients(beside.displacement(rate))
+        return self.model.slope(beside.left(self.energy.rate(parameter, beside.x)))
 
     def _fourth(self, number: int, step: float) -> FloatArray:
         """Return D4 (1,) along a mode, good to the step's second order."""
@@ -114,11 +130,9 @@ class Neighbourhood:
         return np.array([float(mode @ changed) / step**2])
 
 
-def _extrapolated(
-    difference: Callable[[int, float], FloatArray], number: int
-) -> FloatArray:
-    """Return a difference along a mode, good to the step's fourth order."""
-    fine, coarse = difference(number, _STEP), difference(number, 2 * _STEP)
+def _extrapolated(difference: Callable[[int, float], FloatArray]) -> FloatArray:
+    """Return a difference along the first mode, good to the step's fourth order."""
+    fine, coarse = difference(0, _STEP), difference(0, 2 * _STEP)
     better: FloatArray = (4 * fine - coarse) / 3
     return better
 
@@ -131,3 +145,23 @@ def bordered(
     matrix = np.block([[hessian, border], [border.T, np.zeros((k, k))]])
     found = np.linalg.solve(matrix, np.vstack([force, amount]))
     return found[:m], found[m:]
+
+
+def part_along(
+    energy: LoopEnergy, model: TangentModel, mode: FloatArray, parameter: str, unit: float
+) -> float:
+    """Return the part that the pull of a parameter has along a null vector (m,), 0 to 1.
+
+    Parameters
+    ----------
+    model : of the energy, at an equilibrium
+    parameter : that of the branch, or another one of the energy's
+    unit : float, a change of it that counts, as a StepControl's
+    """
+    pull = energy.rate(parameter, model.x)
+    slope = model.slope(pull)
+    held = energy.constraint.force(model.x, model.tensions)
+    forces = [force / unit for force in (*energy.forces(model.x), held)]
+    sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pull, *forces)]
+    size = max(float(np.linalg.norm(slope)), _IDLE * max(sizes))
+    return abs(float(slope @ mode)) / size

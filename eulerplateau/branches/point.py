@@ -73,6 +73,26 @@ class Direction:
 
 
 @dataclass(frozen=True)
+class Motion:
+    """A displacement (n, d) with changes of both parameters (2,)."""
+
+    displacement: FloatArray
+    rates: FloatArray
+
+    def __mul__(self, factor: float) -> Motion:
+        """Return it times a number."""
+        return Motion(factor * self.displacement, factor * self.rates)
+
+    def __add__(self, other: Motion) -> Motion:
+        """Return the sum of two."""
+        return Motion(self.displacement + other.displacement, self.rates + other.rates)
+
+    def __sub__(self, other: Motion) -> Motion:
+        """Return the difference of two."""
+        return self + other * -1.0
+
+
+@dataclass(frozen=True)
 class BranchPoint:
     """An equilibrium on a branch, the branch's direction there, and its stability.
 

@@ -19,6 +19,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.between import Interval, parameter_rate
 from eulerplateau.branches.continuation import advance, released
+from eulerplateau.branches.normal_form import NO_PART, part_along
 from eulerplateau.branches.point import (
     BranchPoint,
     Direction,
@@ -28,20 +29,12 @@ from eulerplateau.branches.point import (
     parameter_slope,
 )
 from eulerplateau.branches.symmetry import ModeSymmetry, mode_symmetry
-from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers import TangentModel
 
 FOLD, BIFURCATION = "fold", "bifurcation"
 
-# |b.phi| / |b| below which b has no part along phi. Symmetric points reach 1e-8; folds on
-# these films have 0.1 and more.
-NO_PART = 1e-3
 # Arclength at which a branch is left for another: far enough for two distinct solutions
 # to be told apart, close enough to be certain of landing on the wanted one.
 _SWITCHING_STEP = 2e-3
-# Part of the film's pull, or of all forces at the parameter's unit, below which what moves
-# the loop is rounding: a true film does not move a round one at all, nor does its twist.
-_IDLE = 1e-6
 # Part of an eigenvalue's change that it may be short of zero where it changes sign; and how
 # many times what rounding makes of it the change has to be.
 _LEAP, _CLEAR = 1e-5, 1e3
@@ -239,26 +232,6 @@ def _step_along(
     return correct(
         point.family, guess, point.value + step * direction.rate, direction, control
     )
-
-
-def part_along(
-    energy: LoopEnergy, model: TangentModel, mode: FloatArray, parameter: str, unit: float
-) -> float:
-    """Return the part that the pull of a parameter has along a null vector (m,), 0 to 1.
-
-    Parameters
-    ----------
-    model : of the energy, at an equilibrium
-    parameter : that of the branch, or another one of the energy's
-    unit : float, a change of it that counts, as a StepControl's
-    """
-    pull = energy.rate(parameter, model.x)
-    slope = model.slope(pull)
-    held = energy.constraint.force(model.x, model.tensions)
-    forces = [force / unit for force in (*energy.forces(model.x), held)]
-    sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pull, *forces)]
-    size = max(float(np.linalg.norm(slope)), _IDLE * max(sizes))
-    return abs(float(slope @ mode)) / size
 
 
 def _describe(

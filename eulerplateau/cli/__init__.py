@@ -16,8 +16,10 @@ from eulerplateau.cli.cell import cell
 from eulerplateau.cli.collect import collect
 from eulerplateau.cli.doctor import doctor
 from eulerplateau.cli.ensemble import ensemble
+from eulerplateau.cli.estimate import estimate
 from eulerplateau.cli.examples import examples
 from eulerplateau.cli.film import film
+from eulerplateau.cli.fit import fit
 from eulerplateau.cli.gallery import gallery
 from eulerplateau.cli.locus import locus
 from eulerplateau.cli.mesh import mesh
@@ -51,8 +53,10 @@ commands.add_command(cell)
 commands.add_command(collect)
 commands.add_command(doctor)
 commands.add_command(ensemble)
+commands.add_command(estimate)
 commands.add_command(examples)
 commands.add_command(film)
+commands.add_command(fit)
 commands.add_command(gallery)
 commands.add_command(locus)
 commands.add_command(mesh)

@@ -11,6 +11,9 @@ from eulerplateau.errors import OutputError, SpecError
 NAMES = ("stiffness", "area", "error")
 _SEPARATORS = ";\t,"
 
+# Where a line stands, and its cells.
+Line = tuple[str, list[str]]
+
 
 @dataclass(frozen=True)
 class AreaTable:
@@ -31,18 +34,7 @@ def read_areas(path: Path) -> AreaTable:
     Raises SpecError that names the file, the line and what would be right, OutputError if
     the file exists and cannot be read.
     """
-    lines = [
-        (number, text)
-        for number, line in enumerate(_text(path).splitlines(), 1)
-        if (text := line.partition("#")[0].strip())
-    ]
-    if not lines:
-        raise SpecError(str(path), "has no data; should have lines of stiffness, area")
-    separator = next((s for s in _SEPARATORS if s in lines[0][1]), ",")
-    rows = [
-        (f"{path}, line {number}", [cell.strip() for cell in text.split(separator)])
-        for number, text in lines
-    ]
+    rows = numbered_lines(path, "stiffness, area")
     where, first = rows[0]
     if any(_number(cell) is None for cell in first):
         places, rows = _places(where, first), rows[1:]
@@ -58,6 +50,25 @@ def read_areas(path: Path) -> AreaTable:
         for name, place in places.items():
             columns[name].append(_checked(where, name, cells[place]))
     return AreaTable(columns["stiffness"], columns["area"], columns.get("error"))
+
+
+def numbered_lines(path: Path, columns: str) -> list[Line]:
+    """Return the lines of a table that say something, each with its place and its cells.
+
+    `columns` are what a line should have. Raises SpecError, and OutputError.
+    """
+    lines = [
+        (number, text)
+        for number, line in enumerate(_text(path).splitlines(), 1)
+        if (text := line.partition("#")[0].strip())
+    ]
+    if not lines:
+        raise SpecError(str(path), f"has no data; should have lines of {columns}")
+    separator = next((s for s in _SEPARATORS if s in lines[0][1]), None)
+    return [
+        (f"{path}, line {number}", [cell.strip() for cell in text.split(separator)])
+        for number, text in lines
+    ]
 
 
 def _text(path: Path) -> str:

@@ -95,10 +95,12 @@ def _report(result: Exploration, drawn: list[str]) -> None:
     load = result.rows[0].load_name
     for point in result.special:
         times = multiple(int(point["multiplicity"]))
+        place, error = (
+            load.shown(float(point[name])) for name in (load.column, f"{load.column}_error")
+        )
         click.echo(
             f"{point['kind']} {point['number']}{times} at {load.text} = "
-            f"{float(point[load.column]):.8g} +- "
-            f"{float(point[f'{load.column}_error']):.1g} on branch {point['branch']}, "
+            f"{place:.8g} +- {error:.1g} on branch {point['branch']}, "
             f"breaks: {point['breaks'] or 'nothing'}"
         )
     number = 1 + max(row.branch for row in result.rows)

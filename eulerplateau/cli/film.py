@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
 
 import click
+
+if TYPE_CHECKING:
+    from eulerplateau.branches.conformal import Start
 
 # What the command line calls the arguments of `rod_film`.
 _OPTIONS = {
@@ -85,16 +89,37 @@ def _numbers(
     start: str, rod: tuple[float, float, float, float], diameter: float | None
 ) -> dict[str, float | int | str]:
     """Return what is said of the film asked for."""
-    from eulerplateau.branches.conformal import Start, pinched_eight, rod_film, thick_eight
+    from eulerplateau.branches.conformal import Start, pinched_eight, thick_eight
     from eulerplateau.errors import SpecError
 
     if diameter is None:
         if start == Start.EIGHT.value:
             return {**pinched_eight(*rod).numbers()}
-        return rod_film(Start(start), *rod).numbers()
+        return _followed(Start(start), rod)
     if start != Start.EIGHT.value:
         raise SpecError("diameter", "needs --start eight: no other film touches itself")
     load, twist_ratio, link, rest_curvature = rod
     if rest_curvature != 0:
         raise SpecError("rest_curvature", "should be 0 with a diameter")
     return thick_eight(load, diameter, twist_ratio, link).numbers()
+
+
+def _followed(
+    start: Start, rod: tuple[float, float, float, float]
+) -> dict[str, float | int | str]:
+    """Return the numbers of a film; a terminal sees how far it has been followed."""
+    from tqdm import tqdm
+
+    from eulerplateau.branches.conformal import rod_film
+    from eulerplateau.cli.compiling import telling_of_compiling
+
+    with tqdm(
+        desc=start.value, unit="film", dynamic_ncols=True, disable=None, leave=False
+    ) as bar:
+
+        def tell(where: str) -> None:
+            bar.set_postfix_str(where)
+            bar.update()
+
+        with telling_of_compiling(bar.set_postfix_str):
+            return rod_film(start, *rod, tell=tell).numbers()

@@ -117,10 +117,14 @@ def _followed(
 def _report(result: Locus, drawn: list[str]) -> None:
     start = result.rows[0]
     first, second = result.names
+    symmetry = ", ".join(result.breaks)
     if start["special"] == "cusp":
-        click.echo(f"{second.text} breaks the bifurcation's symmetry: followed is its fold")
+        needs = f"{second.text} breaks what the bifurcation needs ({symmetry})"
+        click.echo(f"{needs}: followed is the fold that it leaves")
     for row in result.rows:
         what = row["end"] or (row["special"] if row["arclength"] else "")
+        if what == "symmetry is lost" and symmetry:
+            what += f": the mesh breaks what the bifurcation needs ({symmetry})"
         if what:
             click.echo(
                 f"{what} at {first.text} = {row[first.column]:.8g}, "

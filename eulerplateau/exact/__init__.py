@@ -7,6 +7,10 @@
     conformal/      `relax`: films in space, downhill from a start; their branches and
                     their stability (docs/true-film.md)
     cell/           round cells on a continuous adhesion, and their fit (docs/cells.md)
+    bench.py        a loop of a real line, in SI units: its load; bench_changes.py: where
+                    it changes
+    outline/        `fit_outline`: planar films fitted to measured outlines; profiles.py,
+                    estimates.py: intervals of what is fitted, here and of cells
     checks.py       what is asked of their arguments
 
 Of films, lengths are in units of L, energies in alpha/L; a tension is sigma_hat =

@@ -42,6 +42,15 @@ class Load:
         return self.tension_per_load / SPRING_TENSION * load
 
     @property
+    def unit(self) -> str:
+        """That in which it is shown: a pure number has none."""
+        return ""
+
+    def shown(self, value: float) -> float:
+        """Return a value of the column as it is shown: itself."""
+        return value
+
+    @property
     def label(self) -> str:
         """The name as a label of an axis."""
         return f"${self.tex}$"

@@ -40,6 +40,10 @@ class Bending(Term):
         """Return the second derivative by the edges (n, n)."""
         return 2 * self.loop.edge_bending_matrix
 
+    def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
+        """Return 2 B step (n, d)."""
+        return self.loop.bending_force(step)
+
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the change of a quadratic form: its gradient half-way times the step."""
         return float(np.vdot(step, self.loop.bending_force(x + 0.5 * step)))

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.term import Term
+from eulerplateau.loop.term import Term, product
 from eulerplateau.loop.turns import EdgeTurns
 
 
@@ -109,6 +109,12 @@ class LoopEnergy:
             else:
                 by_edges += form
         return _summed(parts, len(x)), by_edges
+
+    def product(self, x: FloatArray, tensions: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the same times a step (n, d) that keeps the constraint to first order."""
+        parts = [term.product(x, step) for term in self.terms.values()]
+        held = product(self.constraint.stiffness(x, tensions), step)
+        return sum(parts, start=held)
 
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the energy at x + step less that at x, as precise as the difference."""

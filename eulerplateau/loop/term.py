@@ -44,6 +44,10 @@ class Term(ABC):
         """
         return None
 
+    def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the second derivative times a step (n, d)."""
+        return product(self.hessian(x), step)
+
     @property
     def is_handed(self) -> bool:
         """Whether a loop and its mirror image differ in it."""
@@ -108,3 +112,10 @@ class OwnTerm(Term):
     @abstractmethod
     def pinched(self, x: FloatArray) -> bool:
         """Return whether the loop meets itself where that ends what the term says."""
+
+
+def product(matrix: FloatArray, step: FloatArray) -> FloatArray:
+    """Return a matrix, (n, n) for all coordinates or (d n, d n), times a step (n, d)."""
+    if len(matrix) == len(step):
+        return matrix @ step
+    return (matrix @ step.ravel()).reshape(step.shape)

@@ -5,6 +5,7 @@ from .comparison import check_plot as check_plot, draw_comparison as draw_compar
 from .locus_picture import draw_locus as draw_locus
 from .of_run import pictures_of as pictures_of
 from .onset import fit_onset as fit_onset
+from .outline_fit import draw_outline_fit as draw_outline_fit
 from .phase_diagram import (
     PHASE_DIAGRAM as PHASE_DIAGRAM,
     draw_phase_diagram as draw_phase_diagram,

@@ -1,7 +1,8 @@
 """Runs: from a specification to a folder of rows and shapes, and back.
 
     running.py      `run`, as from the command line; plan.py: which runs a call asks for
-    spec.py         what a file of runs/ may say, to which a key is added
+    spec.py         what a file of runs/ may say, to which a key is added; spec_files.py:
+                    how it is read; bench_spec.py, bench_load.py: of line and liquid
     inputs.py       its mesh, and what is in the files that it names
     start.py        where a run starts: at its mesh or at a stored shape
     sweep.py, exploration.py   a sweep, the branches; recording.py: what both write

@@ -10,8 +10,9 @@ from typing import Any
 from eulerplateau import __version__
 from eulerplateau.mesh import Disk
 from eulerplateau.runs.inputs import contents
-from eulerplateau.runs.parameters import LOOP_PARAMETERS
-from eulerplateau.runs.spec import RunSpec, described
+from eulerplateau.runs.parameters import own_parameter
+from eulerplateau.runs.spec import RunSpec
+from eulerplateau.runs.spec_files import described
 from eulerplateau.threads import pools
 
 
@@ -38,7 +39,7 @@ def describe(spec: RunSpec, mesh: Disk, quantity: str) -> dict[str, Any]:
         },
         "seed": spec.start.seed,
         "start_sha256": contents(spec.start.file),
-        **({"varied": quantity} if quantity in LOOP_PARAMETERS else {}),
+        **({} if own_parameter(quantity) is None else {"varied": quantity}),
     }
 
 

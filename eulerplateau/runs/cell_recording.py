@@ -14,7 +14,7 @@ from eulerplateau.loop import edges_of
 from eulerplateau.runs.cell_shapes import write_cell_shape
 from eulerplateau.runs.cell_spec import CellRunSpec
 from eulerplateau.runs.recording import OpenRun
-from eulerplateau.runs.spec import described
+from eulerplateau.runs.spec_files import described
 
 
 def describe(spec: CellRunSpec) -> dict[str, Any]:

@@ -9,7 +9,9 @@ from pydantic import Field, model_validator
 
 from eulerplateau.cells import Cell, Sites, read_sites, regular_sites
 from eulerplateau.errors import SpecError
-from eulerplateau.runs.spec import Load, OutputSettings, in_order, read_spec
+from eulerplateau.runs.loads import Load, in_order
+from eulerplateau.runs.spec import OutputSettings
+from eulerplateau.runs.spec_files import read_spec
 from eulerplateau.settings import Settings
 
 Parameter = Literal["sigma_hat", "ks_hat"]

@@ -29,6 +29,15 @@ class CellParameter:
         """The name as a label of an axis."""
         return self.meaning
 
+    @property
+    def unit(self) -> str:
+        """That in which it is shown: a pure number has none."""
+        return ""
+
+    def shown(self, value: float) -> float:
+        """Return a value of the column as it is shown: itself."""
+        return value
+
 
 CELL_PARAMETERS = {
     "sigma_hat": CellParameter(

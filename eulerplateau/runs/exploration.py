@@ -20,12 +20,17 @@ from eulerplateau.branches import (
     where_from,
 )
 from eulerplateau.errors import SpecError
-from eulerplateau.film import LOADS
+from eulerplateau.film import Load
 from eulerplateau.interruption import heed
 from eulerplateau.mesh import Disk
 from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.kinds import film_kind
-from eulerplateau.runs.parameters import LOOP_PARAMETERS
+from eulerplateau.runs.parameters import (
+    LOOP_PARAMETERS,
+    LoopParameter,
+    in_problem,
+    own_parameter,
+)
 from eulerplateau.runs.recording import (
     Opening,
     Recorder,
@@ -91,9 +96,10 @@ def run_branches(
     if spec.film.plane:
         raise SpecError("film.plane", "should be false: branches leave the plane")
     problem = make_problem(spec, disk)
-    window, varied, held = spec.window(), spec.explored, spec.film.load
-    row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature, varied).branch_row
-    opening = Opening("branches", row_type, spec.column(varied), overwrite)
+    window, held, quantity = spec.window(), spec.held, spec.column(spec.explored)
+    varied, rod = in_problem(spec.explored), (spec.twist_ratio, spec.loop.rest_curvature)
+    row_type = film_kind(*rod, quantity).branch_row
+    opening = Opening("branches", row_type, quantity, overwrite)
     names = special_columns(opening.quantity)
     with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run
@@ -113,7 +119,7 @@ def run_branches(
                 unstable_modes=spec.branches.unstable_modes,
                 progress=run.progress,
             )
-            for row in _recorded(points, recorder, names, special):
+            for row in _recorded(spec, points, recorder, names, special):
                 on_row(row)
                 heed()
     rows, kept = tuple(run.rows), (run.kept, run.finished, run.before)
@@ -121,6 +127,7 @@ def run_branches(
 
 
 def _recorded(
+    spec: RunSpec,
     points: Iterator[FilmPoint],
     recorder: Recorder[BranchRow],
     names: Sequence[str],
@@ -137,9 +144,10 @@ def _recorded(
             origin=point.origin,
             special=point.number,
             arclength=point.point.arclength,
+            **spec.cells_at(point.equilibrium.load),
         )
         if point.special is not None and not point.known:
-            special.append(_special(row, point.special))
+            special.append(_special(row, point.special, point.problem.film.load))
         keep_point(run, point, names, special)
         yield row
 
@@ -149,9 +157,12 @@ def special_columns(quantity: str) -> tuple[str, ...]:
 
     Where that is no load, both loads are there too, which are held.
     """
-    if quantity not in LOOP_PARAMETERS:
+    own = own_parameter(quantity)
+    if own is None:
         return SPECIAL_COLUMNS
-    varied = quantity, f"{quantity}_error"
+    varied = own.column, f"{own.column}_error"
+    if own.column not in LOOP_PARAMETERS:
+        return *_BEFORE, *varied, *_LOADS, *_AFTER
     return *_BEFORE, *varied, "kL3_alpha", "sigma_hat", *_AFTER
 
 
@@ -160,14 +171,14 @@ def _start(
 ) -> tuple[Problem, Equilibrium]:
     """Return the equilibrium from which branches start, and of which problem it is one."""
     stored, shape = stored_start(spec, disk), start_shape(spec, disk)
-    varied, held = spec.explored, spec.film.load or 0.0
+    varied, held = in_problem(spec.explored), spec.held or 0.0
     if stored is None:
         there, load = where_from(problem, varied, window, held)
         return there, first_equilibrium(there, load, shape, varied)
     known = {"load": stored.load(problem.film.load), **stored.parameters}
     value = known.get(varied, problem.value(varied, held))
     if not window[0] <= value <= window[1]:
-        ends = "load_min and load_max" if varied == "load" else "low and high"
+        ends = "load_min and load_max" if spec.explored == "load" else "low and high"
         raise SpecError(
             "start.file",
             f"{spec.start.file} has the {varied} {value:g}, outside the window "
@@ -187,11 +198,11 @@ def _modes(point: FilmPoint) -> dict[str, FloatArray]:
     return {"critical_mode": still if mode is None else mode}
 
 
-def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:
+def _special(row: BranchRow, special: SpecialPoint, load: Load) -> dict[str, Any]:
     return {
         "number": row.special,
         "kind": special.kind,
-        **_place(row, special.error),
+        **_place(row, special.error, load),
         "branch": row.branch,
         "step": row.step,
         "n_unstable": special.n_unstable,
@@ -203,11 +214,18 @@ def _special(row: BranchRow, special: SpecialPoint) -> dict[str, Any]:
     }
 
 
-def _place(row: BranchRow, error: float) -> dict[str, float]:
-    """Return where a special point lies, and what rounding can have moved it by."""
+def _place(row: BranchRow, error: float, load: Load) -> dict[str, float]:
+    """Return where a special point lies, and what rounding can have moved it by.
+
+    `error` is that of what the problem varies, which may be this load.
+    """
     place = {"kL3_alpha": row.kL3_alpha, "sigma_hat": row.sigma_hat}
-    load = LOADS.get(row.quantity)
-    if load is None:
-        return {**place, row.quantity: row.load, f"{row.quantity}_error": error}
+    own = own_parameter(row.quantity)
+    if isinstance(own, LoopParameter):
+        return {**place, own.column: row.load, f"{own.column}_error": error}
     errors = load.springs(error), load.tension(error)
-    return place | dict(zip(("kL3_alpha_error", "sigma_hat_error"), errors, strict=True))
+    place |= dict(zip(("kL3_alpha_error", "sigma_hat_error"), errors, strict=True))
+    if own is None:
+        return place
+    held = {own.column: getattr(row, own.column)}
+    return place | held | {f"{own.column}_error": own.error(row, errors[1])}

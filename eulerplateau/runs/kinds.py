@@ -7,20 +7,20 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from eulerplateau.film import FILM_LOADS, SPRING_LOAD
-from eulerplateau.runs.parameters import LOOP_PARAMETERS
+from eulerplateau.runs.parameters import BENCH, own_parameter
 from eulerplateau.runs.rows import (
     BranchRow,
-    CurvedRatioBranchRow,
-    CurvedRatioRow,
     CurvedRodBranchRow,
     CurvedRodRow,
     LoadName,
-    RatioBranchRow,
-    RatioRow,
+    OfLength,
+    OfRatio,
+    OfSurfaceTension,
     Row,
     TwistBranchRow,
     TwistRow,
     columns,
+    with_own,
 )
 from eulerplateau.runs.states import FILM_STATES, States
 
@@ -51,6 +51,10 @@ class Kind:
         """The columns of its sweep.csv; branches.csv has more."""
         return columns(self.row)
 
+    def quantity(self, about: Mapping[str, Any]) -> str:
+        """Return what the rows of a run call what it varies, by its run.json."""
+        return str(about.get("varied", self.load(about).column))
+
 
 def _load(about: Mapping[str, Any]) -> LoadName:
     """Return the load of the film that run.json names.
@@ -75,27 +79,32 @@ def _notes(about: Mapping[str, Any]) -> tuple[str, ...]:
 FILM = Kind("film", Row, BranchRow, _load, "sigma_hat", _notes, FILM_STATES)
 WITH_TWIST = replace(FILM, row=TwistRow, branch_row=TwistBranchRow)
 CURVED = replace(FILM, row=CurvedRodRow, branch_row=CurvedRodBranchRow)
-# Rows with a column for what is varied, where a loop's rows have none.
-_RATIO_ROWS = {
-    TwistRow: (RatioRow, RatioBranchRow),
-    CurvedRodRow: (CurvedRatioRow, CurvedRatioBranchRow),
+# Columns for what is varied, where a loop's rows have none.
+_OWN: dict[str, Any] = {
+    "twist_ratio": OfRatio,
+    BENCH["length"].column: OfLength,
+    BENCH["surface_tension"].column: OfSurfaceTension,
 }
-_ROWS_OF = {"twist_ratio": _RATIO_ROWS}
+
+# With each of these the load varies too.
+_OF_BENCH = {own.column for own in BENCH.values()}
 
 
 def film_kind(twist_ratio: Any, rest_curvature: Any, varied: Any = "load") -> Kind:
-    """Return the kind of a film's run, by the rod of its loop and what it varies.
+    """Return the kind of a film's run, by the rod of its loop and what its rows vary.
 
-    What varies a number of the loop is not to be shown over the load.
+    What varies a number of the loop is not to be shown over the load; what varies a length
+    or a surface tension may be.
     """
     kind = FILM
     if twist_ratio is not None:
         kind = CURVED if rest_curvature else WITH_TWIST
-    own = LOOP_PARAMETERS.get(varied)
+    own = own_parameter(str(varied))
     if own is None:
         return kind
-    rows: dict[Any, Any] = _ROWS_OF.get(own.column, {})
-    row, branch_row = rows.get(kind.row, (kind.row, kind.branch_row))
-    return replace(
-        kind, row=row, branch_row=branch_row, load=lambda about: own, common_load=None
-    )
+    if own.column in _OWN:
+        rows: tuple[Any, Any] = kind.row, kind.branch_row
+        row, branch_row = (with_own(_OWN[own.column], plain) for plain in rows)
+        kind = replace(kind, row=row, branch_row=branch_row)
+    common = kind.common_load if own.column in _OF_BENCH else None
+    return replace(kind, load=lambda about: own, common_load=common)

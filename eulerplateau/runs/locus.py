@@ -22,7 +22,7 @@ from eulerplateau.interruption import heed, working_on
 from eulerplateau.loop import LEAST
 from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.locus_record import Asked, Locus
-from eulerplateau.runs.parameters import LOOP_PARAMETERS
+from eulerplateau.runs.parameters import BENCH, LOOP_PARAMETERS
 from eulerplateau.runs.record import read_run
 from eulerplateau.runs.rows import LoadName
 from eulerplateau.runs.shape_files import read_shape
@@ -57,6 +57,7 @@ def run_locus(
     points = locus_of_film(problem, known, load, varied, windows)
     path.mkdir(parents=True, exist_ok=True)
     rows: list[dict[str, Any]] = []
+    breaks: tuple[str, ...] = ()
     working_on(lambda: f"{path}: {len(rows)} points")
     if (path / LOCUS).exists() and not overwrite:
         raise ConflictError(path, ["points"])
@@ -65,16 +66,20 @@ def run_locus(
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         for point in points:
+            breaks = point.course.breaks
             rows.append(_row(point, columns))
             writer.writerow(rows[-1])
             file.flush()
             on_row(rows[-1])
             heed()
-    return Locus(path, names, tuple(rows), time.perf_counter() - started)
+    return Locus(path, names, tuple(rows), time.perf_counter() - started, breaks)
 
 
 def _start(spec: RunSpec, asked: Asked) -> tuple[Problem, Known, float]:
     """Return the special point, of which problem it is and at which load."""
+    if spec.explored in BENCH:
+        what = f"found {spec.explored!r}; curves are followed in the load, or in the loop's"
+        raise SpecError("sweep.parameter", f"{what} own numbers")
     disk = make_mesh(spec)
     run = read_run(asked.run)
     said = run.special.get(asked.number)
@@ -87,7 +92,7 @@ def _start(spec: RunSpec, asked: Asked) -> tuple[Problem, Known, float]:
         raise OutputError(
             asked.run, "is the run of another mesh: explore its branches anew"
         )
-    held = spec.film.load or 0.0
+    held = spec.held or 0.0
     if run.load.column != spec.column(spec.explored):
         raise OutputError(asked.run, f"varies {run.load.text}: explore its branches anew")
     problem, load = make_problem(spec, disk).at(spec.explored, row.load, held)

@@ -31,12 +31,20 @@ class Asked:
 
 @dataclass(frozen=True)
 class Locus:
-    """A curve of special points, as it was written: `rows` are dicts by column."""
+    """A curve of special points, as it was written.
+
+    Attributes
+    ----------
+    names : of both parameters
+    rows : dicts by column
+    breaks : the symmetries that its bifurcations live on, or that its folds have lost
+    """
 
     folder: Path
     names: tuple[LoadName, LoadName]
     rows: tuple[dict[str, Any], ...]
     seconds: float
+    breaks: tuple[str, ...] = ()
 
     @property
     def special(self) -> tuple[dict[str, Any], ...]:

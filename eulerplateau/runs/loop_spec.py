@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Annotated, Literal
+
 from pydantic import Field, model_validator
 
 from eulerplateau.errors import SpecError
+from eulerplateau.runs.bench_spec import Length
 from eulerplateau.settings import Settings
 
 
@@ -18,9 +21,11 @@ class LoopSettings(Settings):
     ----------
     alpha : float
         Bending energy is alpha * kappa^2 per length (the rod's rigidity is 2 alpha).
-    length : float
-    twist_ratio : float
-        C / B, the rigidity to twist over that to bending: 2/3 to 1 for a round rod.
+    length : float, or "20 cm"
+        In m, where the load is set by [rod] and film.surface_tension.
+    twist_ratio : float or "rod"
+        C / B, the rigidity to twist over that to bending: 2/3 to 1 for a round rod. "rod"
+        takes it from rod.poisson_ratio.
     link : float
         Turns that the rod was given before its ends were welded; by default none.
     rest_curvature : float
@@ -28,8 +33,8 @@ class LoopSettings(Settings):
     """
 
     alpha: float = Field(default=1.0, gt=0)
-    length: float = Field(default=1.0, gt=0)
-    twist_ratio: float | None = Field(default=None, gt=0)
+    length: Length = 1.0
+    twist_ratio: Annotated[float, Field(gt=0)] | Literal["rod"] | None = None
     link: float | None = None
     rest_curvature: float | None = Field(default=None, ge=0)
 

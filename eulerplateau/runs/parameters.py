@@ -1,13 +1,21 @@
-"""What a film's run may vary and what that is called: its load, a number of its loop."""
+"""What a film's run may vary and what that is called: its load, a number of its loop.
+
+The load may be set by a length or a surface tension, in units: a quantity of the bench.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, Literal
 
-Parameter = Literal["load", "link", "twist_ratio", "rest_curvature"]
+from eulerplateau.units import LENGTH, SURFACE_TENSION, Measure
+
+Parameter = Literal[
+    "load", "link", "twist_ratio", "rest_curvature", "length", "surface_tension"
+]
 # The key of the loop without which there is nothing to vary.
 NEEDED = {
     "link": "twist_ratio",
@@ -31,6 +39,15 @@ class LoopParameter:
     tex: str
     meaning: str
     energy_rate: Callable[[Any], float]
+
+    @property
+    def unit(self) -> str:
+        """That in which it is shown: a pure number has none."""
+        return ""
+
+    def shown(self, value: float) -> float:
+        """Return a value of the column as it is shown: itself."""
+        return value
 
     @property
     def text(self) -> str:
@@ -73,3 +90,96 @@ LOOP_PARAMETERS = {
         _energy_by_curvature,
     ),
 }
+
+
+@dataclass(frozen=True)
+class BenchParameter:
+    """A quantity that sets the load, shown in a unit; see rows.LoadName.
+
+    Attributes
+    ----------
+    column : str, which holds it in the SI, and says so
+    letter, meaning : str
+    tex_letter : str, the letter in TeX
+    power : int, of which the load is proportional to it
+    measure : Measure
+    unit : str, in which it is shown: as it was written
+    """
+
+    column: str
+    letter: str
+    tex_letter: str
+    meaning: str
+    power: int
+    measure: Measure
+    unit: str
+
+    @property
+    def quantity(self) -> str:
+        """What Row.quantity is: the column, and the unit in which it is shown."""
+        return f"{self.column}{_IN}{self.unit}"
+
+    def shown(self, value: float) -> float:
+        """Return a value of the column, in the SI, as it is shown."""
+        return value / self.measure.factor(self.unit)
+
+    def energy_rate(self, row: Any) -> float:
+        """Return dE/dp of a row, E in units of alpha / L, p as it is shown."""
+        return float(self.power * row.film_energy / row.load)
+
+    def error(self, row: Any, error: float) -> float:
+        """Return what an error of sigma_hat comes to, in the SI."""
+        return float(getattr(row, self.column) * error / (self.power * row.sigma_hat))
+
+    @property
+    def text(self) -> str:
+        """The name in words, with the unit."""
+        return f"{self.meaning} ({self.unit})"
+
+    @property
+    def symbol(self) -> str:
+        """The name in Unicode: over its unit, a number."""
+        unit = f"({self.unit})" if "/" in self.unit else self.unit
+        return f"{self.letter}/{unit}"
+
+    @property
+    def tex(self) -> str:
+        """The name in TeX: over its unit, a number."""
+        unit = self.unit.replace("*", r"\,")
+        unit = rf"(\mathrm{{{unit}}})" if "/" in unit else rf"\mathrm{{{unit}}}"
+        return f"{self.tex_letter}/{unit}"
+
+    @property
+    def label(self) -> str:
+        """The name as a label of an axis."""
+        return f"{self.meaning} ${self.tex}$"
+
+
+_IN = " in "
+BENCH = {
+    "length": BenchParameter("length_m", "L", "L", "length", 3, LENGTH, LENGTH.unit),
+    "surface_tension": BenchParameter(
+        "surface_tension_N_per_m",
+        "γ",  # noqa: RUF001
+        r"\gamma",
+        "surface tension",
+        1,
+        SURFACE_TENSION,
+        SURFACE_TENSION.unit,
+    ),
+}
+
+
+@cache
+def own_parameter(quantity: str) -> LoopParameter | BenchParameter | None:
+    """Return what a run varies by what its rows call it; None where it is a load."""
+    column, _, unit = quantity.partition(_IN)
+    for known in BENCH.values():
+        if known.column == column:
+            return replace(known, unit=unit or known.unit)
+    return LOOP_PARAMETERS.get(quantity)
+
+
+def in_problem(varied: str) -> str:
+    """Return what varies of the problem where a run varies a quantity of the bench."""
+    return "load" if varied in BENCH else varied

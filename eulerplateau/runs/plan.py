@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from eulerplateau.errors import SpecError
-from eulerplateau.runs.spec import FILE_KEYS, at_home
+from eulerplateau.runs.spec_files import FILE_KEYS, at_home
 
 # Of one call; their specifications are all read before the first begins.
 _MOST_RUNS = 10_000

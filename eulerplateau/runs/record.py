@@ -156,6 +156,8 @@ def read_runs(folders: Sequence[Path]) -> list[Run]:
             raise OutputError(run.folder, problem)
     if len({run.load.column for run in runs}) > 1:
         runs = [_over(run, run.kind.common_load) for run in runs]
+    elif len({run.rows[0].quantity for run in runs}) > 1:  # in several units: in the first
+        runs = [_over(run, runs[0].rows[0].quantity) for run in runs]
     names = _names(distinct)
     labels = _labels(names, runs)
     return [
@@ -167,15 +169,15 @@ def read_runs(folders: Sequence[Path]) -> list[Run]:
 def _read(folder: Path) -> Run:
     about = read_summary(folder)
     kind = kind_of(about)
-    column = kind.load(about).column
+    quantity = kind.quantity(about)
     rows: Sequence[Record]
     special: dict[int, dict[str, str]] = {}
     explored = (folder / "branches.csv").is_file()
     if explored:
-        rows = read_rows(folder / "branches.csv", kind.branch_row, column)
+        rows = read_rows(folder / "branches.csv", kind.branch_row, quantity)
         special = read_special(folder / SPECIAL)
     elif (folder / "sweep.csv").is_file():
-        rows = read_rows(folder / "sweep.csv", kind.row, column)
+        rows = read_rows(folder / "sweep.csv", kind.row, quantity)
     else:
         problem = "is no run folder: it has neither a sweep.csv nor a branches.csv"
         raise OutputError(folder, problem)

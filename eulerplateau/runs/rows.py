@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from functools import cache
 from typing import Any, Protocol
 
 from eulerplateau.film import LOADS, SPRING_LOAD
-from eulerplateau.runs.parameters import LOOP_PARAMETERS
+from eulerplateau.runs.parameters import own_parameter
 from eulerplateau.solvers import Status
 
 
@@ -34,9 +34,12 @@ class LoadName(Protocol):
     def label(self) -> str:
         """Its name as a label of an axis."""
 
+    @property
+    def unit(self) -> str:
+        """The unit in which it is shown; empty of a pure number."""
 
-# Of films, by their columns.
-_NAMES: Mapping[str, LoadName] = {**LOADS, **LOOP_PARAMETERS}
+    def shown(self, value: float) -> float:
+        """Return a value of its column in the unit in which it is shown."""
 
 
 class Record(Protocol):
@@ -92,8 +95,9 @@ class Row:
     """One load of a sweep; its fields but the last, in this order, are sweep.csv's columns.
 
     `quantity` says which of kL3_alpha and sigma_hat is to be taken for the load, or which
-    column for it where another parameter is varied; the table does not repeat it in every
-    row, for run.json knows the film and what is varied.
+    column for it where another parameter is varied, with the unit in which that is shown
+    if it has one ("length_m in cm"); the table does not repeat it in every row, for
+    run.json knows the film and what is varied.
 
     Units: lengths L, energies alpha/L, max_turning and waist_twist degrees. None is an
     empty cell ("not computed"); a float that came out as NaN or infinite is written `nan`
@@ -127,18 +131,19 @@ class Row:
     @property
     def load(self) -> float:
         """The load, in the unit that `quantity` says, or what is varied in place of it."""
-        return float(getattr(self, self.quantity))
+        name = self.load_name
+        return name.shown(float(getattr(self, name.column)))
 
     @property
     def energy_rate(self) -> float:
         """The derivative of the energy by what is varied, at an equilibrium."""
-        own = LOOP_PARAMETERS.get(self.quantity)
+        own = own_parameter(self.quantity)
         return self.film_energy / self.load if own is None else own.energy_rate(self)
 
     @property
     def load_name(self) -> LoadName:
         """What this load is called."""
-        return _NAMES[self.quantity]
+        return own_parameter(self.quantity) or LOADS[self.quantity]
 
     @property
     def converged(self) -> bool:
@@ -183,18 +188,6 @@ class _OfTwist:
 
 
 @dataclass(frozen=True)
-class _OfRatio:
-    """What a row says where the rigidity to twist is varied.
-
-    Attributes
-    ----------
-    twist_ratio : float, C / B
-    """
-
-    twist_ratio: float
-
-
-@dataclass(frozen=True)
 class TwistRow(_OfTwist, Row):
     """One load, or link, of a sweep of a loop that resists twist."""
 
@@ -202,16 +195,6 @@ class TwistRow(_OfTwist, Row):
 @dataclass(frozen=True)
 class TwistBranchRow(_OfTwist, BranchRow):
     """One point of a branch of a loop that resists twist."""
-
-
-@dataclass(frozen=True)
-class RatioRow(_OfRatio, TwistRow):
-    """One rigidity to twist of a sweep."""
-
-
-@dataclass(frozen=True)
-class RatioBranchRow(_OfRatio, TwistBranchRow):
-    """One point of a branch in the rigidity to twist."""
 
 
 @dataclass(frozen=True)
@@ -237,13 +220,46 @@ class CurvedRodBranchRow(_OfCurvedRod, BranchRow):
 
 
 @dataclass(frozen=True)
-class CurvedRatioRow(_OfRatio, CurvedRodRow):
-    """One rigidity to twist of a sweep of a loop that is curved by nature."""
+class OfRatio:
+    """What a row says besides where the rigidity to twist is varied.
+
+    Attributes
+    ----------
+    twist_ratio : float, C / B
+    """
+
+    twist_ratio: float
 
 
 @dataclass(frozen=True)
-class CurvedRatioBranchRow(_OfRatio, CurvedRodBranchRow):
-    """One point of a branch in it."""
+class OfLength:
+    """What a row says besides where the loop's length is varied.
+
+    Attributes
+    ----------
+    length_m : float, in m
+    """
+
+    length_m: float
+
+
+@dataclass(frozen=True)
+class OfSurfaceTension:
+    """What a row says besides where the liquid's surface tension is varied.
+
+    Attributes
+    ----------
+    surface_tension_N_per_m : float, in N/m
+    """
+
+    surface_tension_N_per_m: float  # noqa: N815 - the column's name
+
+
+@cache
+def with_own(own: Any, row: Any) -> Any:
+    """Return the type of rows with the columns of `own` after those of `row`."""
+    made = type(f"{own.__name__}{row.__name__}", (own, row), {"__doc__": row.__doc__})
+    return dataclass(frozen=True)(made)
 
 
 @dataclass(frozen=True)

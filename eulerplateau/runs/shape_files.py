@@ -148,7 +148,7 @@ def write_loop(
 
 def _about(row: Row) -> dict[str, NDArray[Any]]:
     """Return the field data of a film's row: its step, loads, energy, what is varied ..."""
-    return of_row(row, *dict.fromkeys((*_OF_ITS_ROW, row.quantity)))
+    return of_row(row, *dict.fromkeys((*_OF_ITS_ROW, row.load_name.column)))
 
 
 def of_row(row: Record, *names: str) -> dict[str, NDArray[Any]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,36 +12,21 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import MeshSpec
-from eulerplateau.runs.loads import Load as Load, Loads, in_order as in_order
+from eulerplateau.runs.bench_load import BenchLoad, bench_load
+from eulerplateau.runs.bench_spec import RodSettings
+from eulerplateau.runs.film_spec import FilmSettings
+from eulerplateau.runs.loads import Loads
 from eulerplateau.runs.loop_spec import LoopSettings
-from eulerplateau.runs.parameters import NEEDED
+from eulerplateau.runs.parameters import BENCH, NEEDED, own_parameter
+from eulerplateau.runs.spec_files import read_spec
 from eulerplateau.runs.sweep_spec import BranchSettings, SweepSettings
-from eulerplateau.settings import Model, Settings, read_toml, validate
-
-# Keys that name a file.
-FILE_KEYS = "mesh.file", "start.file", "cell.points"
+from eulerplateau.settings import Settings
 
 
 class StoredMesh(Settings):
     """A mesh file, or a mesh specification in a file; relative to the run's file."""
 
     file: str
-
-
-class FilmSettings(Settings):
-    """Which film spans the loop: springs, Dirichlet's energy, or the true area.
-
-    Attributes
-    ----------
-    plane : bool
-        Keeps a film of the true area in its plane, where its loop is all it needs.
-    load : float, k L^3 / alpha of springs and sigma_hat of other films
-        Where another parameter than the load is varied: that at which it is.
-    """
-
-    model: Literal["springs", "dirichlet", "area"] = "springs"
-    plane: bool = False
-    load: float | None = Field(default=None, ge=0)
 
 
 class StartSettings(Settings):
@@ -129,6 +114,7 @@ class RunSpec(Settings):
         Discriminator(_kind_of_mesh),
     ]
     film: FilmSettings = FilmSettings()
+    rod: RodSettings | None = None
     loop: LoopSettings = LoopSettings()
     start: StartSettings = StartSettings()
     sweep: SweepSettings
@@ -168,6 +154,10 @@ class RunSpec(Settings):
             if needed is not None and not getattr(self.loop, needed):
                 problem = f"found {section.parameter!r}; needs loop.{needed}"
                 raise SpecError(f"{key}.parameter", problem)
+        _ = self.twist_ratio
+        self.branches.check_window(self.explored)
+        if self.bench is not None:
+            return self
         others = {self.sweep.varied, self.explored} - {"load"}
         if not others and self.film.load is not None:
             problem = "is for runs that vary something else: loads are sweep.loads"
@@ -175,7 +165,6 @@ class RunSpec(Settings):
         if others and self.film.load is None:
             what = " and ".join(sorted(others))
             raise SpecError("film.load", f"is missing: the load at which {what} is varied")
-        self.branches.check_window(self.explored)
         return self
 
     @model_validator(mode="after")
@@ -189,94 +178,84 @@ class RunSpec(Settings):
         """What is varied along branches."""
         return self.branches.parameter or self.sweep.varied
 
+    @property
+    def twist_ratio(self) -> float | None:
+        """C / B of the loop, its own or that of its rod; None where twist escapes."""
+        given = self.loop.twist_ratio
+        if given != "rod":
+            return given
+        return (self.rod or RodSettings()).twist_ratio
+
+    @property
+    def bench(self) -> BenchLoad | None:
+        """What sets the load in units; None where the run says the load itself."""
+        return bench_load(self.rod, self.loop, self.film, self.sweep, self.explored)
+
+    @property
+    def held(self) -> float | None:
+        """The load at which another parameter is varied; None where loads are varied."""
+        if self.bench is None:
+            return self.film.load
+        return None if self.sweep.varied in BENCH else self.bench.at()
+
     def column(self, varied: str) -> str:
-        """Return the column of what is varied."""
+        """Return what rows call what is varied: its column, and the unit it is shown in."""
+        if varied in BENCH:
+            unit = self.sweep.unit or self.branches.unit or BENCH[varied].unit
+            return replace(BENCH[varied], unit=unit).quantity
         return FILM_LOADS[self.film.model].column if varied == "load" else varied
 
     def values(self) -> list[float]:
         """Return what is swept, loads or values of another parameter, in order."""
-        return self.loads() if self.sweep.varied == "load" else self.sweep.in_order()
+        if self.sweep.varied == "load":
+            return self.loads()
+        own = own_parameter(self.column(self.sweep.varied))
+        values = self.sweep.in_order()
+        return values if own is None else [own.shown(value) for value in values]
+
+    def steps(self) -> list[tuple[float, dict[str, float]]]:
+        """Return, of each step of a sweep, what is varied of the problem, and own cells."""
+        varied = self.sweep.varied
+        if varied not in BENCH:
+            return [(value, {}) for value in self.values()]
+        column, values = BENCH[varied].column, self.sweep.in_order()
+        cells = [{column: value} for value in values]
+        return list(zip(self.loads(), cells, strict=True))
+
+    def cells_at(self, load: float) -> dict[str, float]:
+        """Return what a row says besides where a quantity of the bench sets its load."""
+        if self.bench is None or self.explored not in BENCH:
+            return {}
+        return {BENCH[self.explored].column: self.bench.value(self.explored, load)}
 
     def window(self) -> tuple[float, float]:
-        """Return the window of branches; raises SpecError where it is none."""
-        values = self.values() if self.explored == self.sweep.varied else []
+        """Return the window of branches in the problem's parameter; SpecError for none."""
+        swept = self.explored == self.sweep.varied
+        values = self.loads() if self.explored == "load" else self.sweep.in_order()
+        values = values if swept else []
         if self.explored == "load" and values:
             values = [load for load in values if load > 0] or [1.0]
-        return self.branches.window(self.explored, values)
+        low, high = self.branches.window(self.explored, values)
+        if self.bench is None or self.explored not in BENCH:
+            return low, high
+        return self.bench.at(**{self.explored: low}), self.bench.at(**{self.explored: high})
 
     def loads(self) -> list[float]:
         """Return the film's loads in the order in which they are swept."""
-        if self.film.load is not None and self.sweep.varied != "load":
-            return [self.film.load]
+        bench, varied = self.bench, self.sweep.varied
+        if bench is not None and varied in BENCH:
+            return [bench.at(**{varied: value}) for value in self.sweep.in_order()]
+        if self.held is not None and varied != "load":
+            return [self.held]
         scale = 1.0
         if self.sweep.quantity == FILM_LOADS[self.film.model].constant:
-            length = self.loop.length
+            length, rod = self.loop.length, self.rod or RodSettings()
+            alpha = self.loop.alpha if rod.rigidity is None else rod.rigidity / 2
             # Not length**3, which raises where a product overflows to infinity.
-            scale = length * length * length / self.loop.alpha
+            scale = length * length * length / alpha
         return [scale * value for value in self.sweep.in_order()]
 
 
 def load_run(path: Path, overrides: dict[str, Any]) -> RunSpec:
     """Read the specification of a film's run; see `read_spec`."""
     return read_spec(path, overrides, RunSpec)
-
-
-def read_spec(path: Path, overrides: dict[str, Any], model: type[Model]) -> Model:
-    """Read a specification, with `overrides` {dotted key: value} on top.
-
-    A relative file that it names is looked for beside it. Raises SpecError.
-    """
-    data = read_toml(path)
-    for key, value in overrides.items():
-        override(data, key, value)
-    return validate(located(data, path.parent), model, str(path))
-
-
-def located(data: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a specification, read as plain data, with its files looked for in a folder."""
-    for key in FILE_KEYS:
-        name, _, entry = key.partition(".")
-        section = data.get(name)
-        if isinstance(section, dict) and isinstance(section.get(entry), str):
-            section[entry] = str(folder / at_home(key, section[entry]))
-    return data
-
-
-def at_home(key: str, file: str) -> Path:
-    """Return the path of a file, `~` being the home directory.
-
-    Raises SpecError if nobody has that home, or no file can have the name.
-    """
-    if "\0" in file:
-        raise SpecError(key, f"found {file!r}; a file's name holds no NUL")
-    try:
-        return Path(file).expanduser()
-    except RuntimeError:
-        raise SpecError(key, f"found {file!r}; whose home directory is not known") from None
-
-
-def described(spec: Settings) -> dict[str, Any]:
-    """Return a specification as run.json has it: files are found from wherever one is."""
-    data: dict[str, Any] = spec.model_dump(mode="json")
-    return located(data, Path.cwd())
-
-
-def override(data: dict[str, Any], key: str, value: Any) -> None:
-    """Replace a dotted key of a specification read as plain data; raises SpecError."""
-    *sections, name = key.split(".")
-    if not sections:
-        raise SpecError(key, "should name its section, as in solver.name or sweep.loads")
-    for section in sections:
-        data = data.setdefault(section, {})
-        if not isinstance(data, dict):
-            raise SpecError(key, f"{section} is not a section of the specification")
-    data[name] = value
-
-
-def leaves(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the dotted keys of nested tables; how they are written makes no difference."""
-    for key, value in table.items():
-        if isinstance(value, dict) and value:
-            yield from leaves(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value

@@ -15,7 +15,7 @@ def make_problem(spec: RunSpec, disk: Disk) -> Problem:
         disk,
         spec.film.model,
         in_plane=spec.film.plane,
-        twist_ratio=spec.loop.twist_ratio,
+        twist_ratio=spec.twist_ratio,
         link=spec.loop.link or 0.0,
         rest_curvature=spec.loop.rest_curvature or 0.0,
     )

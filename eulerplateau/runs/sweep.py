@@ -17,6 +17,7 @@ from eulerplateau.runs.about import describe
 from eulerplateau.runs.continuing import look
 from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.kinds import film_kind
+from eulerplateau.runs.parameters import in_problem
 from eulerplateau.runs.recording import (
     Opening,
     OpenRun,
@@ -75,8 +76,8 @@ def run_sweep(
     problem = make_problem(spec, disk)
     start, tensions, solver = start_shape(spec, disk), None, spec.solver
     opening = _opening(spec, overwrite, resume)
-    held, varied = spec.film.load or 0.0, spec.sweep.varied
-    steps = [problem.at(varied, value, held) for value in spec.values()]
+    held, varied = spec.held or 0.0, in_problem(spec.sweep.varied)
+    steps = [(*problem.at(varied, value, held), own) for value, own in spec.steps()]
     with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run
         neutral = _neutral(run)
@@ -87,14 +88,14 @@ def run_sweep(
             left = steps[run.kept :]
             swept = follow_steps(
                 problem,
-                left,
+                [(there, load) for there, load, _ in left],
                 start,
                 tensions=tensions,
                 solver=solver.name,
                 max_iterations=solver.max_iterations,
             )
-            for found, (there, _) in zip(swept, left, strict=True):
-                row = recorder.record(there, found, _modes(spec, there, found))
+            for found, (there, _, own) in zip(swept, left, strict=True):
+                row = recorder.record(there, found, _modes(spec, there, found), **own)
                 neutral += [row.step] if found.n_neutral else []
                 on_row(row)
                 heed()
@@ -128,9 +129,9 @@ def conflict(spec: RunSpec, path: Path, *, resume: bool = False) -> ConflictErro
 
 def _opening(spec: RunSpec, overwrite: bool, resume: bool) -> Opening[Row]:
     """Return how the folder of a sweep is opened."""
-    varied, loads = spec.sweep.varied, spec.values() if resume else None
-    row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature, varied).row
-    return Opening("sweep", row_type, spec.column(varied), overwrite, loads=loads)
+    quantity, loads = spec.column(spec.sweep.varied), spec.values() if resume else None
+    row_type = film_kind(spec.loop.twist_ratio, spec.loop.rest_curvature, quantity).row
+    return Opening("sweep", row_type, quantity, overwrite, loads=loads)
 
 
 def _neutral(run: OpenRun[Row]) -> list[int]:

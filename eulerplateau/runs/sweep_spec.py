@@ -4,12 +4,19 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import (
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    field_validator,
+    model_validator,
+)
 
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LEAST
+from eulerplateau.runs.bench_spec import kind_of, values_in_si
 from eulerplateau.runs.loads import Loads, Values, in_order
-from eulerplateau.runs.parameters import Parameter
+from eulerplateau.runs.parameters import BENCH, Parameter, in_problem
 from eulerplateau.settings import Settings
 
 _MISSING = "is missing and has no default"
@@ -22,9 +29,12 @@ class SweepSettings(Settings):
     ----------
     loads : list of numbers, ranges {start, stop, step} and refinements
         {onset, nearest, farthest, count}; sorted, each value once.
-    parameter : "load", "link", "twist_ratio" or "rest_curvature"
-        What is varied; by default the load. Another one is varied at the load film.load.
-    values : as loads, of that other parameter
+    parameter : "load", "link", "twist_ratio", "rest_curvature"; "length", "surface_tension"
+        What is varied; by default the load. A length or a surface tension sets the load
+        with [rod] and the other of the two; another parameter is varied at the load
+        film.load, or at that which [rod] and both of them set.
+    values : as loads, of that other parameter; lengths and surface tensions in the SI or
+        with units, as "20 cm"
     quantity : "kL3_alpha" or "k" for springs, "sigma_hat" or "sigma" for other films
         What `loads` are: k L^3 / alpha or spring constants k, sigma L^3 / alpha or tensions
         sigma. By default the load, not the constant.
@@ -36,6 +46,20 @@ class SweepSettings(Settings):
     values: Values | None = None
     quantity: Literal["kL3_alpha", "k", "sigma_hat", "sigma"] | None = None
     direction: Literal["up", "down", "up-down"] = "up"
+
+    _unit: str = PrivateAttr("")
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _in_si(cls, given: Any, made: ModelWrapValidatorHandler[Any]) -> Any:
+        """Keep the unit of values that have one, in which they are shown."""
+        unit, varied = "", given.get("parameter") if isinstance(given, dict) else None
+        if varied in BENCH and isinstance(given.get("values"), list):
+            values, unit = values_in_si("sweep.values", varied, given["values"])
+            given = {**given, "values": values}
+        found = made(given)
+        found._unit = unit
+        return found
 
     @field_validator("loads")
     @classmethod
@@ -57,7 +81,10 @@ class SweepSettings(Settings):
         for key in ("loads", "quantity"):
             if getattr(self, key) is not None:
                 problem = f"should be absent where sweep.parameter is {self.varied!r}"
-                raise SpecError(f"sweep.{key}", f"{problem}: the load is film.load")
+                load = "film.load, or what [rod] says"
+                if self.varied in BENCH:
+                    load = "what [rod] and it say"
+                raise SpecError(f"sweep.{key}", f"{problem}: the load is {load}")
         if self.values is None:
             raise SpecError("sweep.values", _MISSING)
         check_positive("sweep.values", self.varied, self.in_order())
@@ -67,6 +94,11 @@ class SweepSettings(Settings):
     def varied(self) -> str:
         """What is varied."""
         return self.parameter or "load"
+
+    @property
+    def unit(self) -> str:
+        """The unit of the values, as it was written; empty where it is that of the SI."""
+        return self._unit
 
     def in_order(self) -> list[float]:
         """Return the values in the order in which they are swept."""
@@ -78,12 +110,12 @@ class BranchSettings(Settings):
 
     Attributes
     ----------
-    parameter : "load", "link", "twist_ratio" or "rest_curvature"
+    parameter : as that of a sweep
         What is varied, by default what the sweep varies.
     load_min, load_max : float
         The window of loads, k L^3 / alpha of springs and sigma_hat of other films; by
         default that of sweep.loads.
-    low, high : float
+    low, high : float, or a length or a surface tension as in sweep.values
         That of another parameter; by default that of sweep.values.
     special_points : int
         New branches are followed from the first so many folds and bifurcations.
@@ -98,6 +130,28 @@ class BranchSettings(Settings):
     high: float | None = None
     special_points: int = Field(default=8, ge=0)
     unstable_modes: int = Field(default=3, ge=0)
+
+    _units: dict[str, str] = PrivateAttr(default_factory=dict)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _in_si(cls, given: Any, made: ModelWrapValidatorHandler[Any]) -> Any:
+        """Keep the units of the window's ends, by what they are."""
+        units: dict[str, str] = {}
+        ends = given if isinstance(given, dict) else {}
+        for key in ("low", "high"):
+            if isinstance(ends.get(key), str):
+                kind, read = kind_of(f"branches.{key}", ends[key])
+                units.setdefault(kind, read.unit)
+                given = {**given, key: read.value}
+        found = made(given)
+        found._units = units
+        return found
+
+    @property
+    def unit(self) -> str:
+        """The unit of the window's ends, as it was written; empty where it has none."""
+        return next(iter(self._units.values()), "")
 
     def window(self, varied: str, values: list[float]) -> tuple[float, float]:
         """Return the window of a parameter, by default that of `values`; SpecError."""
@@ -118,6 +172,10 @@ class BranchSettings(Settings):
 
     def check_window(self, varied: str) -> None:
         """Raise SpecError for a window of something else than what is varied."""
+        wrong = self._units.keys() - {varied}
+        if wrong:
+            problem = f"are of a {wrong.pop()}, where {varied} is varied"
+            raise SpecError("branches.low, branches.high", problem)
         own, others = _ENDS[varied == "load"], _ENDS[varied != "load"]
         for key in others:
             if getattr(self, key) is not None:
@@ -131,7 +189,7 @@ _ENDS = {True: ("load_min", "load_max"), False: ("low", "high")}
 
 def check_positive(key: str, varied: str, values: list[float]) -> None:
     """Raise SpecError for values of a parameter that do not exist."""
-    least = LEAST[varied]
+    least = LEAST[in_problem(varied)]
     for value in values:
         if value <= least:
             problem = f"found {value:g}; {varied} should be above {least:g}"

@@ -12,6 +12,7 @@ from .newton import lowest_modes as lowest_modes
 from .problem import Problem as Problem
 from .second_variation import (
     TangentModel as TangentModel,
+    spectrum_of as spectrum_of,
     stability as stability,
     tangent_model as tangent_model,
 )
@@ -23,3 +24,5 @@ from .solving import (
     sweep as sweep,
 )
 from .start import displaced as displaced
+from .tangent_coordinates import Columns as Columns
+from .tangent_space import Directional as Directional, directional as directional

@@ -20,9 +20,10 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import EdgeTurns, LengthMetric, LoopEnergy
+from eulerplateau.loop import EdgeTurns, LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.tangent_coordinates import Columns, Coordinates, turned
+from eulerplateau.solvers.tangent_space import balanced, normals, orthonormal
 
 
 @dataclass(frozen=True)
@@ -177,7 +178,8 @@ def _by_turns(
     turns: EdgeTurns,
 ) -> tuple[Coordinates, FloatArray, FloatArray, FloatArray]:
     if turns.others is None:
-        tensions, unbalanced = balanced(energy, x, force, free, turns.metric)
+        motions = orthonormal(energy, free)
+        tensions, unbalanced = balanced(energy, x, force, motions, turns.metric)
         coordinates = turned(turns, free)
     else:
         tensions, unbalanced = _balanced_by_all(energy, force, free, turns)
@@ -185,25 +187,6 @@ def _by_turns(
         coordinates = turned(turns, np.hstack([free, turns.others.T / weights]))
     gradient = coordinates.slope(unbalanced.reshape(-1, 1))[:, 0]
     return coordinates, tensions, gradient, unbalanced
-
-
-def balanced(
-    energy: LoopEnergy,
-    x: FloatArray,
-    force: FloatArray,
-    free: FloatArray,
-    metric: LengthMetric,
-) -> tuple[FloatArray, FloatArray]:
-    """Return the tensions (n,) that balance a force (n, d) best, and what is left of it.
-
-    Of that the part along motions (d n, k) that are free is left out.
-    """
-    tensions = metric.balance(force)
-    left = (force + energy.constraint.force(x, tensions)).reshape(-1, 1)
-    motions = orthonormal(energy, free)
-    root = np.repeat(np.sqrt(energy.weights), x.shape[1])[:, None]
-    left -= motions @ (motions.T @ (left / root**2))
-    return tensions, left.reshape(x.shape)
 
 
 def _balanced_by_all(
@@ -228,22 +211,12 @@ def _balanced_by_all(
     return np.concatenate([pulls, pushes]), unbalanced.reshape(shape)
 
 
-def orthonormal(energy: LoopEnergy, free: FloatArray) -> FloatArray:
-    """Return motions (d n, k) made orthonormal in the norm of the weights, times these."""
-    root = np.repeat(np.sqrt(energy.weights), len(free) // len(energy.weights))[:, None]
-    held: FloatArray = np.linalg.qr(free * root)[0] * root
-    return held
-
-
 def _by_columns(
     energy: LoopEnergy, x: FloatArray, force: FloatArray, free: FloatArray
 ) -> tuple[Coordinates, FloatArray, FloatArray, FloatArray]:
-    scale = np.repeat(np.sqrt(energy.weights), x.shape[1])
+    scale, columns, m = normals(energy, x, free)
     weighted = force.ravel() / scale
-    rows = energy.constraint.jacobian(x)
-    m = len(rows)
-    normals = np.hstack([(rows / scale).T, free * scale[:, None]])
-    q, r = np.linalg.qr(normals, mode="complete")
+    q, r = np.linalg.qr(columns, mode="complete")
     # What is along free motions is not for tensions to balance.
     known = m + free.shape[1]
     tensions = -np.linalg.solve(r[:known], q[:, :known].T @ weighted)[:m]
@@ -254,12 +227,16 @@ def _by_columns(
 
 
 def stability(model: TangentModel) -> Stability:
-    """Return the spectrum at an equilibrium.
+    """Return the spectrum at an equilibrium."""
+    return spectrum_of(model.eigenvalues)
 
-    The error bound is the backward error of the symmetric eigensolver and of the projected
+
+def spectrum_of(values: FloatArray) -> Stability:
+    """Return all eigenvalues, ascending, with the error they have.
+
+    The bound is the backward error of the symmetric eigensolver and of the projected
     Hessian, a small multiple of eps |H|_2 (Weyl).
     """
-    values = model.eigenvalues
     if len(values) == 0:
         return Stability(values, 0.0)
     eps = float(np.finfo(np.float64).eps)

@@ -2,6 +2,7 @@
 
 import json
 from functools import cache
+from itertools import islice
 from math import pi, sqrt
 
 import numpy as np
@@ -17,14 +18,16 @@ from eulerplateau.branches.conformal import (
     films_by_writhe,
     pinched_eight,
     rod_film,
+    smooth_family,
     stiffness,
 )
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.conformal import GENERAL, disk, edge, make_basis
 from eulerplateau.exact.planar import planar_film
 from eulerplateau.solvers import tangent_model
-from tests.helpers.command import run_here
+from tests.helpers.command import command_line, run_here
 from tests.helpers.conformal_films import twisted
+from tests.helpers.processes import shown_at_a_terminal
 
 LOADS = (0.2, 0.5, 1.0, 1.7, 2.9)  # nu, below n^2 - 1 for n = 2, 3, 4
 
@@ -185,13 +188,33 @@ def test_twist_opens_or_presses_the_pinched_eight():
     assert (left.writhe, left.pinch) == (-1.0, "opens")
 
 
+def test_the_spectrum_in_space_is_that_of_all_harmonics_in_one_matrix():
+    """By half-turns that each displacement keeps; the loop is neither flat nor round."""
+    *_, point = islice(films_by_writhe(1700.0), 5)
+    family = smooth_family(point)
+    assert abs(family.twist(point.value).writhe(point.x)) > 0.05
+    expected = family.at_once(point).eigenvalues
+    found = family.in_space(point).eigenvalues
+    np.testing.assert_allclose(found, expected, atol=1e-11 * np.abs(expected).max())
+
+
 def test_command_prints_json_and_says_what_is_no_film():
     args = ["film", "--sigma-hat", "1700", "--twist-ratio", "0.7", "--json"]
     done = run_here(*args, "--start", "lobes")
     numbers = json.loads(done.stdout)
     assert done.returncode == 0
+    # A bar is for people: this is no terminal.
+    assert done.stderr == ""
     assert numbers["status"] == "converged"
     assert numbers["energy"] == pytest.approx(planar_film(2, 1700.0).energy, rel=1e-10)
     pinched = run_here(*args, "--start", "eight", "--link", "0.5")
     assert pinched.returncode == 4
     assert json.loads(pinched.stdout)["pinch"] == "opens"
+
+
+@pytest.mark.slow
+def test_at_a_terminal_the_command_shows_how_far_it_has_followed_the_film():
+    args = ["film", "--sigma-hat", 1700, "--twist-ratio", 0.7, "--start", "lobes"]
+    shown = shown_at_a_terminal(command_line(*args, "--link", 0.05))
+    assert b"writhe 0.0" in shown
+    assert b"film/s" in shown

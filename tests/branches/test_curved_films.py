@@ -166,3 +166,12 @@ def test_what_is_not_known_is_refused():
 def test_branch_that_folds_on_the_way_is_refused():
     with pytest.raises(NoFilmError, match="folds near the rest curvature 0"):
         rod_film(Start.TWISTED, 1700.0, 0.05, 0.0, 0.5)
+
+
+def test_it_is_told_how_far_a_film_has_been_followed():
+    told = []
+    rod_film(Start.DISK, 500.0, 0.75, 0.0, 0.5, told.append)
+    values = [float(where.removeprefix("rest curvature ")) for where in told]
+    assert values[0] == 0
+    assert values == sorted(values)
+    assert 0 < values[-1] < 0.5

@@ -11,6 +11,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import (
     BIFURCATION,
     LocusPoint,
+    Resolution,
     Special,
     StepControl,
     follow_locus,
@@ -18,13 +19,17 @@ from eulerplateau.branches import (
     special_at,
 )
 from eulerplateau.branches.conformal import (
+    CurvedFamily,
+    Harmonics,
     SmoothFamily,
     critical_moment,
     films_by_writhe,
+    in_basis,
     smooth_family,
     stiffness,
+    tail,
 )
-from eulerplateau.branches.conformal.by_writhe import lobes_at
+from eulerplateau.branches.conformal.by_writhe import CONTROL, lobes_at
 from eulerplateau.exact.conformal import TWISTED, disk, make_basis
 from eulerplateau.threads import one_thread
 
@@ -35,6 +40,7 @@ def followed(
     near: tuple[float, str, float],
     *windows: tuple[float, float],
     largest: float = 0.1,
+    resolution: Resolution | None = None,
 ) -> list[LocusPoint]:
     """The curve through a bifurcation near a value of the family's parameter."""
     value, second, other = near
@@ -46,7 +52,7 @@ def followed(
     with one_thread():
         special = special_at(family, flat, value, BIFURCATION)
         start = locus_start(special, second, other, controls)  # type: ignore[arg-type]
-        return list(follow_locus(start))
+        return list(follow_locus(start, resolution=resolution or Resolution()))
 
 
 def of_disk(
@@ -77,6 +83,25 @@ def test_the_disk_is_lost_where_the_theory_says_all_along_a_curve() -> None:
     (turn,) = (point for point in points if point.special == Special.TURN)
     assert turn.values[1] == pytest.approx(48 * pi**3, rel=1e-12)
     assert turn.values[0] == pytest.approx(0, abs=1e-9)
+
+
+def test_the_disk_s_threshold_over_the_natural_curvature_of_its_rod() -> None:
+    """sigma_2(q) = 96 pi^3 [1 - q (q + g) / (q + 4 g)], to 1e-10."""
+    g, q = 0.75, 0.5
+    basis = make_basis(6, TWISTED)
+    near = 96 * pi**3 * (1 - q * (q + g) / (q + 4 * g))
+    values = {"load": near, "twist_ratio": g, "link": 0.0, "rest_curvature": q}
+    family = CurvedFamily(basis, values, "load")
+    flat = family.unknowns.x(disk(basis, near).coefficients)
+    points = followed(
+        family, flat, (near, "rest_curvature", q), (1000.0, 3000.0), (0.1, 1.2)
+    )
+    loads, curvatures = np.transpose([point.values for point in points])
+    assert curvatures.min() < 0.1
+    assert curvatures.max() > 1.2
+    exact = 96 * pi**3 * (1 - curvatures * (curvatures + g) / (curvatures + 4 * g))
+    np.testing.assert_allclose(loads, exact, rtol=1e-10)
+    assert all(point.course.symmetric for point in points)
 
 
 @pytest.mark.parametrize("load", [50.0, 100.0, 500.0, 1000.0])
@@ -125,6 +150,29 @@ def of_lobes(
 
 
 @pytest.mark.slow
+def test_harmonics_are_added_where_a_curve_asks_for_them() -> None:
+    """From too few, flat lobes twist at the C/B that E_0'' of better films asks for."""
+    fine = lobes_at(1900.0)
+    crowding = smooth_family(fine).basis.crowding
+    coarse = in_basis(fine, make_basis(48, TWISTED, crowding), CONTROL)
+    assert coarse is not None
+    assert tail(coarse) > 1e-10
+    ratio = -stiffness(coarse) / (8 * pi**2)
+    values = {"load": 1900.0, "twist_ratio": ratio, "link": 0.0}
+    family = SmoothFamily(smooth_family(coarse).basis, values, "load")
+    near, windows = (1900.0, "twist_ratio", ratio), ((1890.0, 2050.0), (0.0, 1.0))
+    points = followed(
+        family, coarse.x, near, *windows, largest=0.03, resolution=Harmonics()
+    )
+    *_, last = (point for point in points if point.arclength > 0)
+    assert len(last.model.x) > len(points[0].model.x) > len(coarse.x)
+    for point in (points[0], last):
+        load, ratio = (float(value) for value in point.values)
+        expected = -stiffness(lobes_at(load)) / (8 * pi**2)
+        assert ratio == pytest.approx(expected, rel=1e-8)
+
+
+@pytest.mark.slow
 def test_flat_lobes_twist_where_their_least_energy_of_given_writhe_says() -> None:
     """Where E_0''(0) + 8 pi^2 C/B = 0, by another solver; 1855.67727 at no C/B."""
     family, points = of_lobes(1900.0, "twist_ratio", (0.0, 1.0), 0.03)
@@ -160,6 +208,9 @@ def test_a_link_leaves_two_folds_of_the_lobes_bifurcation_that_meet_in_its_cusp(
     _, points = of_lobes(1900.0, "link", (-2e-3, 2e-3), 0.01)
     assert not any(point.course.symmetric for point in points)
     assert points[0].special == Special.CUSP
+    # What a link takes from flat lobes, whose half turns it leaves.
+    mirrors = {f"mirror across {axis} axis" for axis in ("long", "middle", "short")}
+    assert set(points[0].course.breaks) == mirrors | {"inversion"}
     loads, links = np.transpose([point.values for point in points])
     assert links[0] == pytest.approx(0, abs=1e-9)
     assert links.min() < -2e-3

@@ -22,7 +22,15 @@ from eulerplateau.pictures.gallery import collect, page
 from eulerplateau.runs.cell_table import CellRow
 from eulerplateau.runs.folder import RunFolder
 from eulerplateau.runs.record import read_run
-from eulerplateau.runs.rows import BranchRow, RatioRow, TwistRow, columns
+from eulerplateau.runs.rows import (
+    BranchRow,
+    OfLength,
+    OfRatio,
+    OfSurfaceTension,
+    TwistRow,
+    columns,
+    with_own,
+)
 from eulerplateau.runs.series_file import shape_name
 from tests.helpers.command import run_here
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
@@ -162,7 +170,10 @@ def test_columns_the_page_shows_are_those_of_the_table() -> None:
     )
     films, cells = static.read_text().split("cell: [")
     # Of what a row does not have the page says nothing.
-    for text, row in ((films, RatioRow), (cells, CellRow)):
+    film_row = TwistRow
+    for own in (OfRatio, OfLength, OfSurfaceTension):
+        film_row = with_own(own, film_row)
+    for text, row in ((films, film_row), (cells, CellRow)):
         keys = {part.split('"')[0] for part in text.split('key: "')[1:]}
         assert keys <= set(columns(row))
         assert len(keys) > 10

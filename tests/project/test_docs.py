@@ -1,19 +1,15 @@
-"""The documentation: its examples run, its links lead somewhere, and its site builds."""
+"""The documentation: its examples run, and its links lead somewhere."""
 
 from __future__ import annotations
 
-import ast
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import click
 import pytest
 
-import eulerplateau
 from eulerplateau.cli import commands
 from eulerplateau.cli.cell import cell
 from eulerplateau.mesh import MeshSpec
@@ -21,20 +17,12 @@ from eulerplateau.runs import load_run
 from eulerplateau.runs.ensembles import running
 from eulerplateau.settings import load_toml
 from tests.helpers.command import run_here
+from tests.helpers.pages import DOCS, EXAMPLES, PAGES, ROOT, blocks
 
-ROOT = Path(__file__).parents[2]
-DOCS = ROOT / "docs"
-PAGES = sorted(DOCS.glob("*.md"))
 TUTORIAL = DOCS / "tutorial.md"
-EXAMPLES = [ROOT / "README.md", *PAGES]
 
 # As the committed runs, which take longer: one flat state and one out of the plane.
 SHORT_RUN = '[mesh]\nfile = "../meshes/{}.vtp"\n[sweep]\nloads = [600, 700]\n'
-
-
-def blocks(page: Path, language: str) -> list[str]:
-    """Return the fenced blocks of a page in one language, in order."""
-    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(), re.M | re.S)
 
 
 def examples(page: Path) -> list[tuple[str, str | None]]:
@@ -133,6 +121,26 @@ def test_commands_of_the_tutorial_on_cells_do_what_it_says(clone: Path) -> None:
         assert (clone / written).stat().st_size > 0, written
 
 
+def test_commands_of_the_page_at_the_bench_print_what_it_says(
+    clone: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = DOCS / "bench.md"
+    for block in blocks(page, "csv") + blocks(page, "toml"):
+        (clone / named(block)).write_text(block)
+    pattern = r"^```sh\n(.*?)^```$(?:\n\n```text\n(.*?)^```$)?"
+    found = re.findall(pattern, page.read_text(), re.M | re.S)
+    assert len(found) == 3
+    for line, said in found:
+        done = run_here(*shlex.split(line)[1:])
+        assert done.returncode == 0
+        if said:
+            words, numbers = words_and_numbers(said)
+            printed = words_and_numbers(done.stdout)
+            assert printed == (words, pytest.approx(numbers, 1e-3))
+    for written in ("runs/nylon/diagram.png", "fit.png"):
+        assert (clone / written).stat().st_size > 0
+
+
 def test_specifications_of_the_tutorial_are_valid(clone: Path) -> None:
     specifications = [clone / named(block) for block in blocks(TUTORIAL, "toml")]
     assert {path.parent.name for path in specifications} == {"meshes", "runs"}
@@ -154,6 +162,8 @@ def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
         "ensemble",
         "collect",
         "doctor",
+        "estimate",
+        "fit",
     }
     assert {line[1] for line in lines} == set(commands.commands) - elsewhere
     for line in lines:
@@ -216,42 +226,8 @@ def test_files_of_code_on_every_page_exist(page: Path) -> None:
     assert [path for path in mentioned if not {*ROOT.glob(path), *package.glob(path)}] == []
 
 
-@pytest.mark.parametrize("page", [ROOT / "README.md", *PAGES], ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", EXAMPLES, ids=lambda page: page.stem)
 def test_relative_links_and_images_lead_to_files(page: Path) -> None:
     targets = re.findall(r"\]\(([^)\s#]+)(?:#[^)\s]*)?\)", page.read_text())
     local = [target for target in targets if not target.startswith("http")]
     assert [target for target in local if not (page.parent / target).is_file()] == []
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """Return the built pages by name; any warning of the build is an error."""
-    folder = tmp_path_factory.mktemp("site")
-    build = ["-P", "-m", "mkdocs", "build", "--strict"]
-    where = ["--config-file", str(ROOT / "mkdocs.yml"), "--site-dir", str(folder)]
-    subprocess.run([sys.executable, *build, *where], check=True)
-    return {path.stem: path.read_text() for path in folder.glob("*.html")}
-
-
-def test_site_has_every_page_and_loads_nothing_from_elsewhere(site: dict[str, str]) -> None:
-    assert site.keys() == {page.stem for page in PAGES} | {"404"}
-    for text in site.values():
-        loaded = re.findall(r"<(?:script|link|img)\b[^>]*\b(?:src|href)=\"([^\"]*)\"", text)
-        assert loaded
-        assert not [address for address in loaded if re.match(r"https?:|//", address)]
-
-
-def test_interface_page_documents_the_front_door_and_what_examples_import(
-    site: dict[str, str],
-) -> None:
-    documented = set(re.findall(r'id="eulerplateau\.([\w.]+)"', site["api"]))
-    names = set(eulerplateau.__all__) - {"__version__"}
-    assert names <= {found.rpartition(".")[2] for found in documented}
-    listed = (DOCS / "api.md").read_text().partition("\n## Meshes")[0]
-    assert names <= set(re.findall(r"\[`(\w+)`\]", listed))
-    for page in set(EXAMPLES) - {DOCS / "true-film.md"}:  # of rooms inside a room
-        tree = ast.parse("".join(blocks(page, "python")))
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and node.module.startswith("eulerplateau"):
-                module = node.module.partition(".")[2]
-                assert {f"{module}.{alias.name}" for alias in node.names} <= documented

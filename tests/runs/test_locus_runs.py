@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import csv
+import signal
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from eulerplateau import interruption
+from eulerplateau.branches import LocusPoint, film_at
+from eulerplateau.errors import ConflictError
 from eulerplateau.mesh import write_mesh
+from eulerplateau.runs import locus as locus_runs
+from eulerplateau.solvers import Equilibrium
 from tests.helpers.command import run_here
+from tests.solvers.test_curved_rod import softening
 from tests.solvers.test_twist import critical_link, disk
 
 RATIO, LOAD = 0.75, 500.0
@@ -41,6 +48,7 @@ def followed(explored: Path, *arguments: object) -> list[dict[str, str]]:
     done = run_here(*words, "--overwrite")
     assert done.returncode == 0, done.stderr
     assert "curve of bifurcations" in done.stdout
+    assert "breaks" not in done.stdout
     assert (out / "locus.png").stat().st_size > 0
     with (out / "locus.csv").open() as file:
         return list(csv.DictReader(file))
@@ -62,6 +70,61 @@ def test_the_disk_s_bifurcation_over_link_and_load(explored: Path) -> None:
     # Of a polygon of 24 sides: all of one sign, of the size of (2 pi / 24)^2.
     assert (errors < 0).all()
     assert np.abs(errors).max() < 2 * (2 * np.pi / 24) ** 2
+
+
+@pytest.mark.slow
+def test_the_disk_s_threshold_over_natural_curvature(tmp_path: Path) -> None:
+    """sigma_2(q) of the classical formula, from a rod that is straight by nature on."""
+    q = 0.2
+    write_mesh(disk(24), tmp_path / "disk.vtp")
+    near = 96 * np.pi**3 * softening(2, q, RATIO)
+    ends = f"load_min = {0.3 * near}, load_max = {1.2 * near}"
+    (tmp_path / "ring.toml").write_text(
+        f"""
+        mesh.file = "disk.vtp"
+        film.model = "dirichlet"
+        loop = {{ twist_ratio = {RATIO}, rest_curvature = {q} }}
+        sweep.loads = [{0.97 * near}, {1.02 * near}]
+        branches = {{ special_points = 0, {ends} }}
+        """
+    )
+    words = "branches", tmp_path / "ring.toml", "--quiet", "--no-pictures"
+    assert run_here(*words).returncode == 0
+    window = "--from", 0.05, "--to", 0.8
+    rows = followed(tmp_path, "--with", "loop.rest_curvature", *window)
+    loads = np.array([float(row["sigma_hat"]) for row in rows])
+    curvatures = np.array([float(row["rest_curvature"]) for row in rows])
+    assert curvatures.min() < 0.05
+    assert curvatures.max() > 0.8
+    exact = 96 * np.pi**3 * softening(2, curvatures, RATIO)
+    # Of a polygon of 24 sides.
+    np.testing.assert_allclose(loads, exact, rtol=(2 * np.pi / 24) ** 2)
+
+
+def test_ctrl_c_leaves_the_points_so_far(
+    explored: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, seen = explored / "broken-off", []
+
+    def interrupted(point: LocusPoint) -> Equilibrium:
+        seen.append(point)
+        if len(seen) == 4:
+            patched.setattr(interruption._noted, "number", signal.SIGINT)
+        return film_at(point)
+
+    words = "locus", explored / "ring.toml", "--point", 0, "--with", "load", "-o", out
+    with monkeypatch.context() as patched:
+        patched.setattr(locus_runs, "film_at", interrupted)
+        done = run_here(*words)
+    assert done.returncode == 130
+    assert f"interrupted: {out}: 4 points" in done.stderr
+    with (out / "locus.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["sigma_hat"]) for row in rows] == [p.values[1] for p in seen]
+    assert all(None not in row.values() for row in rows)
+    # It is a curve as others are, in whose place another one comes only if asked to.
+    assert run_here(*words).returncode == ConflictError.exit_code
+    assert run_here(*words, "--to", 510, "--overwrite").returncode == 0
 
 
 @pytest.mark.parametrize(

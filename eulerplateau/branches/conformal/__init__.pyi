@@ -18,6 +18,7 @@ from .films import (
     Start as Start,
     rod_film as rod_film,
 )
+from .locus_harmonics import Harmonics as Harmonics
 from .pinched import PinchedEight as PinchedEight, pinched_eight as pinched_eight
 from .resolution import in_basis as in_basis, resolved as resolved, tail as tail
 from .touching import TouchingFamily as TouchingFamily

@@ -12,7 +12,7 @@ writhe is stable with a rod where E_0'' + 8 pi^2 C/B > 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import cast
 
@@ -36,6 +36,8 @@ from eulerplateau.exact.conformal import (
 )
 from eulerplateau.solvers import tangent_model
 
+# Is told how far a film has been followed.
+Tell = Callable[[str], None]
 # C / B of a rod that takes up next to no twist.
 RIGID = 1e3
 # Steps are measured by the writhe, and are this long at most.
@@ -56,7 +58,10 @@ _AWAY = 0.02
 
 
 def films_by_writhe(
-    load: float, narrowest: float = NARROWEST, step: float = CONTROL.first_step
+    load: float,
+    narrowest: float = NARROWEST,
+    step: float = CONTROL.first_step,
+    tell: Tell = lambda where: None,
 ) -> Iterator[BranchPoint]:
     """Yield films of rising writhe at a load, right-handed, of a rod of twist ratio RIGID.
 
@@ -64,11 +69,13 @@ def films_by_writhe(
 
     They begin with the flat film of two lobes or, up to 48 pi^3, next to the disk, and end
     before the waist is narrower than `narrowest`, in L, or where harmonics do not resolve
-    it any more. Each is of TWISTED, its lobes along x.
+    it any more. Each is of TWISTED, its lobes along x. `tell` is told the writhe of each.
     """
     point = lobes_at(load) if load > BUCKLING else _beside_disk(load)
     place: Place | None = Place(point, step, CONTROL.max_points)
     while place is not None and waist(film_of(place.point)) > narrowest:
+        writhe = smooth_family(place.point).twist(place.point.value).writhe(place.point.x)
+        tell(f"writhe {writhe:.3f}")
         yield place.point
         place = next_place(place, CONTROL)
         if place is not None:

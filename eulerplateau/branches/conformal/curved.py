@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 from eulerplateau.branches.conformal.curved_family import CurvedFamily
@@ -25,10 +26,15 @@ class NoFilmError(EulerPlateauError):
     exit_code = NOT_CONVERGED_EXIT_CODE
 
 
-def curved(point: BranchPoint, rest_curvature: float) -> BranchPoint:
+def curved(
+    point: BranchPoint,
+    rest_curvature: float,
+    tell: Callable[[str], None] = lambda where: None,
+) -> BranchPoint:
     """Return the film that a film of no link leads to as its rod's natural curvature rises.
 
     rest_curvature : float, q = k0 L / 2 pi, positive
+    tell : is told how far it has come, film by film
 
     Raises NoFilmError where the branch folds on the way.
     """
@@ -49,6 +55,7 @@ def curved(point: BranchPoint, rest_curvature: float) -> BranchPoint:
     place = Place(first_point(family, start.x, 0.0, control), 0.1, control.max_points)
     while True:
         before = place.point
+        tell(f"rest curvature {before.value:.3f}")
         after = next_place(place, control)
         if after is None or after.point.value < before.value:
             problem = f"the branch folds near the rest curvature {before.value:.4g}"

@@ -12,7 +12,14 @@ from eulerplateau.branches.conformal.family import SmoothFamily
 from eulerplateau.branches.conformal.frames import Frames
 from eulerplateau.branches.conformal.rod_term import SmoothRod
 from eulerplateau.branches.conformal.terms import Unknowns
-from eulerplateau.exact.conformal import Curve, gauge_fields, gauge_modes, slides
+from eulerplateau.branches.point import BranchPoint
+from eulerplateau.exact.conformal import (
+    Curve,
+    gauge_fields,
+    gauge_modes,
+    slides,
+)
+from eulerplateau.solvers import Stability
 
 
 @dataclass(frozen=True)
@@ -38,6 +45,10 @@ class CurvedFamily(SmoothFamily):
     def tail(self, x: FloatArray) -> float:
         """Return the relative error of truncation, roughly: the loop's, or the frame's."""
         return max(super().tail(x), self.frames.tail(self.unknowns.others(x)))
+
+    def in_space(self, point: BranchPoint) -> Stability:
+        """Return the spectrum among all loops and frames."""
+        return self.at_once(point)
 
     def carried(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
         """Return what stands here for a film of another family, of the same grid."""

@@ -15,6 +15,7 @@ from eulerplateau.branches.conformal.rod_term import SmoothRod
 from eulerplateau.branches.conformal.terms import (
     SmoothBending,
     SmoothFilm,
+    SmoothLoop,
     SmoothTwist,
     Unknowns,
     WholeLength,
@@ -22,14 +23,17 @@ from eulerplateau.branches.conformal.terms import (
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.exact.conformal import (
     GENERAL,
+    HALF_TURNS,
+    TWISTED,
     Basis,
     ConformalFilm,
+    Family,
     bending_energy,
     gauge_modes,
     make_basis,
 )
 from eulerplateau.loop import LoopEnergy, Term
-from eulerplateau.solvers import Stability, stability, tangent_model
+from eulerplateau.solvers import Columns, Stability, spectrum_of, stability, tangent_model
 
 
 @dataclass(frozen=True)
@@ -114,11 +118,15 @@ class SmoothFamily:
         return self
 
     def in_space(self, point: BranchPoint) -> Stability:
-        """Return the spectrum among all loops, not those of the basis's symmetry alone."""
-        basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
-        family = replace(self, basis=basis)
-        energy = family.energy(point.value)
-        return stability(tangent_model(energy, family.carried(self, point.x)))
+        """Return the spectrum among all loops, not those of the basis's symmetry alone.
+
+        Of a loop with all half-turns the second variation mixes no displacements that keep
+        different ones of them.
+        """
+        others = HALF_TURNS[1:] if self.basis.family is TWISTED else ()
+        values = [point.model.eigenvalues]
+        values += [self._beside(family, point) for family in others]
+        return spectrum_of(np.sort(np.concatenate(values)))
 
     def tail(self, x: FloatArray) -> float:
         """Return the relative error of truncation in the loop's tangent, roughly."""
@@ -134,12 +142,46 @@ class SmoothFamily:
         coefficients = other.unknowns.loop(x).coefficients
         return self.unknowns.x(self.basis.transfer(other.basis, coefficients))
 
+    def at_once(self, point: BranchPoint) -> Stability:
+        """Return the spectrum among all loops by one matrix, whatever the energy is."""
+        basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
+        family = replace(self, basis=basis)
+        energy = family.energy(point.value)
+        return stability(tangent_model(energy, family.carried(self, point.x)))
+
+    def _beside(self, symmetry: Family, point: BranchPoint) -> FloatArray:
+        """Return the eigenvalues of displacements of another symmetry than the loop's.
+
+        They keep its length to first order, each of them.
+        """
+        basis = make_basis(self.basis.harmonics, symmetry, self.basis.crowding)
+        loop = self.unknowns.loop(point.x)
+        family = _Beside(basis, self.values, self.parameter, loop=loop)
+        energy, still = family.energy(point.value), np.zeros((basis.size, 1))
+        free, scale = energy.free_motions(still), np.sqrt(energy.weights)
+        moves = np.linalg.qr(free * scale[:, None], mode="complete")[0][:, free.shape[1] :]
+        coordinates = Columns(moves, scale)
+        hessian = coordinates.hessian(energy, still, point.model.tensions)
+        return np.linalg.eigvalsh(hessian).astype(np.float64, copy=False)
+
     def _values(self, value: float) -> Mapping[str, float]:
         return {**self.values, self.parameter: value}
 
     def _free_motions(self, x: FloatArray) -> FloatArray:
         u = self.unknowns
         return gauge_modes(u.basis, u.loop(x).curve) / u.scale[:, None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Beside(SmoothFamily):
+    """Displacements of another symmetry from a loop, which is at x = 0."""
+
+    loop: SmoothLoop
+
+    @cached_property
+    def unknowns(self) -> Unknowns:
+        """What stands for a displacement."""
+        return Unknowns.beside(self.basis, self.loop)
 
 
 def smooth_family(point: BranchPoint) -> SmoothFamily:

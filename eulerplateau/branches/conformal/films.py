@@ -15,7 +15,12 @@ from itertools import chain, pairwise
 
 from scipy.optimize import brentq
 
-from eulerplateau.branches.conformal.by_writhe import CONTROL, NARROWEST, films_by_writhe
+from eulerplateau.branches.conformal.by_writhe import (
+    CONTROL,
+    NARROWEST,
+    Tell,
+    films_by_writhe,
+)
 from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
@@ -34,7 +39,6 @@ from eulerplateau.exact.conformal import (
 
 _ROUND_HARMONICS = 16
 _FOUND = 1e-13
-
 
 # Neighbours on a branch, and what is looked for between them.
 Neighbours = tuple[BranchPoint, BranchPoint, "_Held"]
@@ -102,6 +106,7 @@ def rod_film(
     twist_ratio: float = 0.0,
     link: float = 0.0,
     rest_curvature: float = 0.0,
+    tell: Tell = lambda where: None,
 ) -> RodFilm:
     """Return the film that a start leads to at a load, with a rod turned `link` times.
 
@@ -116,6 +121,7 @@ def rod_film(
         right-handed where it starts, with no link.
     rest_curvature : float
         q = k0 L / 2 pi, of a rod of link 0: the film is followed to it as well.
+    tell : is told how far that has come, film by film
 
     Raises
     ------
@@ -124,23 +130,21 @@ def rod_film(
     """
     checked(load, twist_ratio, link, rest_curvature)
     if start is Start.LOBES and link < 0:
-        return _mirror_image(rod_film(start, load, twist_ratio, -link))
+        return _mirror_image(rod_film(start, load, twist_ratio, -link, tell=tell))
     values = {"load": load, "twist_ratio": twist_ratio, "link": link}
-    found = _straight_rod(start, values)
-    return _measured(curved(found, rest_curvature) if rest_curvature else found)
+    found = _straight_rod(start, values, tell)
+    return _measured(curved(found, rest_curvature, tell) if rest_curvature else found)
 
 
-def _straight_rod(start: Start, values: Mapping[str, float]) -> BranchPoint:
+def _straight_rod(start: Start, values: Mapping[str, float], tell: Tell) -> BranchPoint:
     """Return the film that a start leads to, with a rod that is straight by nature."""
     load, twist_ratio, link = values["load"], values["twist_ratio"], values["link"]
     if start is Start.DISK:
         return _flat_disk(values)
     if start is Start.LOBES and load <= BUCKLING:
-        problem = (
-            f"found {load:g}; lobes exist above {BUCKLING:.6g}, where the disk buckles"
-        )
-        raise SpecError("load", problem)
-    path = films_by_writhe(load)
+        exist = f"lobes exist above {BUCKLING:.6g}, where the disk buckles"
+        raise SpecError("load", f"found {load:g}; {exist}")
+    path = films_by_writhe(load, tell=tell)
     if start is Start.LOBES and link == 0.0:
         return _with_rod(next(iter(path)), values)
     between = _between if start is Start.LOBES else _twisted_between

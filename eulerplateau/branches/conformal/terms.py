@@ -17,8 +17,10 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.conformal import (
     Basis,
+    Blocks,
     Crossing,
     Curve,
+    bending_blocks,
     bending_gradient,
     bending_hessian,
     crossing,
@@ -26,6 +28,7 @@ from eulerplateau.exact.conformal import (
     length_hessian,
     loop_length,
     precondition,
+    writhe_blocks,
     writhe_gradient,
     writhe_hessian,
     writhe_modulo_two,
@@ -59,6 +62,31 @@ class SmoothLoop:
         """Where the strands of its waist are nearest."""
         return crossing(self.basis, self.coefficients)
 
+    @cached_property
+    def writhe_gradient(self) -> FloatArray:
+        """Its gradient (size,)."""
+        return writhe_gradient(self.basis, self.curve)
+
+
+@dataclass(frozen=True)
+class LoopBeside(SmoothLoop):
+    """A loop as displacements of another symmetry than its own find it.
+
+    `basis` is theirs, and all coefficients there are 0.
+    """
+
+    itself: SmoothLoop
+
+    @cached_property
+    def curve(self) -> Curve:
+        """The loop at the grid."""
+        return self.itself.curve
+
+    @cached_property
+    def writhe(self) -> float:
+        """Wr."""
+        return self.itself.writhe
+
 
 @dataclass(frozen=True)
 class Unknowns:
@@ -82,6 +110,13 @@ class Unknowns:
         frame_waves : (m,) float, the wavenumbers of the frame
         """
         return cls(basis, precondition(basis), 1 / np.sqrt(1 + frame_waves**2))
+
+    @classmethod
+    def beside(cls, basis: Basis, loop: SmoothLoop) -> Unknowns:
+        """Return those of displacements of another symmetry from a loop: it is at x = 0."""
+        found, still = cls.of(basis, np.zeros(0)), np.zeros((basis.size, 1))
+        found._known.append((still, LoopBeside(basis, still[:, 0], loop)))
+        return found
 
     @property
     def scales(self) -> FloatArray:
@@ -117,6 +152,12 @@ class Unknowns:
         """Return the derivative (size + m, 1) by x of a gradient (size,) by the loop's."""
         return np.concatenate([self.scale * gradient, 0 * self.frame_scale])[:, None]
 
+    def product(self, blocks: Blocks, step: FloatArray) -> FloatArray:
+        """Return a second derivative times a step (size + m, 1)."""
+        return self.slope(
+            blocks.product(self.basis, self.scale * step[: self.basis.size, 0])
+        )
+
     def curvature(self, hessian: FloatArray) -> FloatArray:
         """Return the second derivative by x of that (size, size) by coefficients."""
         m = len(self.frame_scale)
@@ -139,6 +180,11 @@ class SmoothBending(Term):
         """Return the second derivative (size, size)."""
         u = self.unknowns
         return u.curvature(bending_hessian(u.basis, u.loop(x).curve))
+
+    def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the second derivative times a step (size, 1)."""
+        u = self.unknowns
+        return u.product(bending_blocks(u.loop(x).curve), step)
 
 
 @dataclass(frozen=True)
@@ -194,10 +240,17 @@ class SmoothTwist(EvenTwist):
         stiff: FloatArray = 4 * math.pi**2 * self.gamma * slope @ slope.T
         return stiff - 2 * math.pi * self.moment(x) * second
 
+    def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the second derivative times a step (size, 1)."""
+        u, slope = self.unknowns, self.slope(x)
+        bent = u.product(writhe_blocks(u.loop(x).curve), step)
+        stiff = 4 * math.pi**2 * self.gamma * float(np.vdot(slope, step)) * slope
+        return stiff - 2 * math.pi * self.moment(x) * bent
+
     def slope(self, x: FloatArray) -> FloatArray:
         """Return dWr/dx (size, 1)."""
         u = self.unknowns
-        return u.slope(writhe_gradient(u.basis, u.loop(x).curve))
+        return u.slope(u.loop(x).writhe_gradient)
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ from eulerplateau.exact.conformal import (
     make_basis,
 )
 from eulerplateau.loop import LoopEnergy
+from eulerplateau.solvers import Stability
 
 _STEPS, _TRUST = 12, 0.5
 _SETTLED, _STUCK = 1e-13, 1e-9
@@ -88,6 +89,10 @@ class TouchingFamily(SmoothFamily):
         """Return the energy at a value of the parameter."""
         held = self.held(value)
         return replace(super().energy(value), constraint=held)
+
+    def in_space(self, point: BranchPoint) -> Stability:
+        """Return the spectrum among all loops that stay apart."""
+        return self.at_once(point)
 
     def held(self, value: float) -> HeldApart:
         """Return the constraint at a value of the parameter."""

@@ -2,7 +2,7 @@
 
     spreading.py       `cell_radius`: a round cell on a continuous adhesion
     area_fit.py        `fit_areas`: contractility and bending from measured areas;
-                       area_model.py: the areas expected; profiles.py: least squares
+                       area_model.py: the areas expected
     regular.py         `regular_cell`: on a regular polygon of adhesions, from the
                        boundary-value problem; side.py: half a side, by polynomials
     tethered.py        all shapes of a regular cell on one curve

@@ -23,26 +23,12 @@ from scipy.special import ndtri, stdtrit
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell.area_model import AreaModel, areas
-from eulerplateau.exact.cell.profiles import Minimum, Profile, lowest
+from eulerplateau.exact.estimates import Estimate as Estimate
+from eulerplateau.exact.profiles import Minimum, Profile, lowest
 
 # A parameter whose factor e moves all areas by less than this part of their errors has no
 # say in the curve's own error.
 _UNFELT = 1e-3
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A fitted value and its interval; 0 and infinity where the data set no bound.
-
-    The value itself is 0 or infinite where the fit is best in that limit.
-    """
-
-    value: float
-    low: float
-    high: float
-
-    def __str__(self) -> str:
-        return f"{self.value:.4g} ({self.low:.4g} to {self.high:.4g})"
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from math import log, pi
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.cell.profiles import Box
 from eulerplateau.exact.cell.spreading import cubic_root
+from eulerplateau.exact.profiles import Box
 
 # How far beyond the data a parameter is followed, and how much farther the others may go
 # meanwhile, as logarithms. There the model is within 1e-6 of its limits.

@@ -1,5 +1,6 @@
 from .basis import (
     GENERAL as GENERAL,
+    HALF_TURNS as HALF_TURNS,
     PLANAR as PLANAR,
     TWISTED as TWISTED,
     Basis as Basis,
@@ -23,9 +24,12 @@ from .branch import (
 )
 from .eight import FlatEight as FlatEight, flat_eight as flat_eight
 from .energy import (
+    Blocks as Blocks,
+    bending_blocks as bending_blocks,
     bending_energy as bending_energy,
     bending_gradient as bending_gradient,
     bending_hessian as bending_hessian,
+    length_blocks as length_blocks,
     length_gradient as length_gradient,
     length_hessian as length_hessian,
     loop_length as loop_length,
@@ -52,6 +56,7 @@ from .jets import Jet as Jet, dot as dot, variables as variables
 from .lobes import (
     BUCKLING as BUCKLING,
     first_lobes as first_lobes,
+    lobes_twist as lobes_twist,
     two_lobes as two_lobes,
 )
 from .relaxation import relax as relax
@@ -67,6 +72,7 @@ from .strands import (
     nearest_strands as nearest_strands,
 )
 from .writhe import (
+    writhe_blocks as writhe_blocks,
     writhe_gradient as writhe_gradient,
     writhe_hessian as writhe_hessian,
     writhe_modulo_two as writhe_modulo_two,

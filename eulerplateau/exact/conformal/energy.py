@@ -41,6 +41,48 @@ class _Invariants:
         return self.u * self.v - self.c**2
 
 
+@dataclass(frozen=True)
+class Blocks:
+    """A second derivative by x' and x'' at each point, (n, 3, 3): pp, pq and qq.
+
+    None where there is nothing but zeros.
+    """
+
+    pp: FloatArray
+    pq: FloatArray | None
+    qq: FloatArray | None
+
+    def matrix(self, basis: Basis) -> FloatArray:
+        """Return sum B1^T pp B1 + B1^T pq B2 + B2^T pq^T B1 + B2^T qq B2 over the grid."""
+        whole = np.zeros((basis.size, basis.size))
+        for a in range(3):
+            for b in range(a, 3):
+                _, a1, a2 = basis.matrices[a]
+                _, b1, b2 = basis.matrices[b]
+                block = a1.T @ (self.pp[:, a, b, None] * b1)
+                if self.pq is not None:
+                    block += a1.T @ (self.pq[:, a, b, None] * b2)
+                    block += a2.T @ (self.pq[:, b, a, None] * b1)
+                if self.qq is not None:
+                    block += a2.T @ (self.qq[:, a, b, None] * b2)
+                rows, columns = basis.slices[a], basis.slices[b]
+                whole[rows, columns] = basis.weight * block
+                whole[columns, rows] = whole[rows, columns].T
+        return whole
+
+    def product(self, basis: Basis, step: FloatArray) -> FloatArray:
+        """Return that times a step (size,): without the matrix, in O(n size)."""
+        moved = basis.curve(step)
+        by_x1 = _times(self.pp, moved.x1)
+        by_x2 = np.zeros_like(by_x1)
+        if self.pq is not None:
+            by_x1 += _times(self.pq, moved.x2)
+            by_x2 += _times(self.pq.transpose(0, 2, 1), moved.x1)
+        if self.qq is not None:
+            by_x2 += _times(self.qq, moved.x2)
+        return assemble(basis, by_x1, 1) + assemble(basis, by_x2, 2)
+
+
 def terms(basis: Basis, coefficients: FloatArray) -> Terms:
     """Return the energies of a loop (size,) and their gradients."""
     curve = basis.curve(coefficients)
@@ -83,6 +125,11 @@ def bending_hessian(basis: Basis, curve: Curve) -> FloatArray:
     `basis` may have another symmetry than the loop: then this is the block of the
     displacements that have it.
     """
+    return bending_blocks(curve).matrix(basis)
+
+
+def bending_blocks(curve: Curve) -> Blocks:
+    """Return the second derivative of |x' x x''|^2 / |x'|^5."""
     i, (p, q) = _invariants(curve), curve[1:]
     by_p, by_q = _g_slopes(curve, i)
     u5, u7, u9 = (_column(i.u**-power) for power in (2.5, 3.5, 4.5))
@@ -93,15 +140,19 @@ def bending_hessian(basis: Basis, curve: Curve) -> FloatArray:
     pq = u5 * (4 * _outer(p, q) - 2 * _outer(q, p) - 2 * _column(i.c) * eye)
     pq += -5 * u7 * _outer(p, by_q)
     qq = 2 * u5 * (_column(i.u) * eye - _outer(p, p))
-    return assemble_blocks(basis, pp, pq, qq)
+    return Blocks(pp, pq, qq)
 
 
 def length_hessian(basis: Basis, curve: Curve) -> FloatArray:
     """Return the Hessian (size, size) of oint |x'| dphi; see `bending_hessian`."""
+    return length_blocks(curve).matrix(basis)
+
+
+def length_blocks(curve: Curve) -> Blocks:
+    """Return the second derivative of |x'|."""
     p = curve.x1
     speed = _column(np.linalg.norm(p, axis=1))
-    pp = np.eye(3) / speed - _outer(p, p) / speed**3
-    return assemble_blocks(basis, pp, None, None)
+    return Blocks(np.eye(3) / speed - _outer(p, p) / speed**3, None, None)
 
 
 def _invariants(curve: Curve) -> _Invariants:
@@ -130,28 +181,13 @@ def _outer(a: FloatArray, b: FloatArray) -> FloatArray:
     return a[:, :, None] * b[:, None, :]
 
 
+def _times(blocks: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return blocks (n, 3, 3) times vectors (n, 3)."""
+    products: FloatArray = np.einsum("nab,nb->na", blocks, vectors)
+    return products
+
+
 def assemble(basis: Basis, slopes: FloatArray, order: int) -> FloatArray:
     """Return the gradient (size,) of slopes (n, 3) by the loop's derivative of an order."""
     parts = [m[order].T @ slopes[:, axis] for axis, m in enumerate(basis.matrices)]
     return basis.weight * np.concatenate(parts)
-
-
-def assemble_blocks(
-    basis: Basis, pp: FloatArray, pq: FloatArray | None, qq: FloatArray | None
-) -> FloatArray:
-    """Return sum B1^T pp B1 + B1^T pq B2 + B2^T pq^T B1 + B2^T qq B2 over the grid."""
-    whole = np.zeros((basis.size, basis.size))
-    for a in range(3):
-        for b in range(a, 3):
-            _, a1, a2 = basis.matrices[a]
-            _, b1, b2 = basis.matrices[b]
-            block = a1.T @ (pp[:, a, b, None] * b1)
-            if pq is not None:
-                block += a1.T @ (pq[:, a, b, None] * b2)
-                block += a2.T @ (pq[:, b, a, None] * b1)
-            if qq is not None:
-                block += a2.T @ (qq[:, a, b, None] * b2)
-            rows, columns = basis.slices[a], basis.slices[b]
-            whole[rows, columns] = basis.weight * block
-            whole[columns, rows] = whole[rows, columns].T
-    return whole

@@ -9,11 +9,12 @@ import numpy as np
 
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.checks import finite
-from eulerplateau.exact.conformal.basis import PLANAR, Basis, make_basis
+from eulerplateau.exact.conformal.basis import PLANAR, TWISTED, Basis, make_basis
 from eulerplateau.exact.conformal.branch import (
     BranchError,
     BranchPoint,
     go_to_load,
+    locate,
     resolve,
     switch,
 )
@@ -28,6 +29,8 @@ _FIRST = 1600.0
 _PARTS = 15
 _SWITCHED = 0.02
 _TAIL, _RESOLVED = 1e-11, 1e-8
+# Loads of stable and of unstable lobes, close enough for one step of a branch.
+_STABLE, _UNSTABLE = 1820.0, 1890.0
 
 
 def two_lobes(load: float) -> ConformalFilm:
@@ -51,6 +54,14 @@ def two_lobes(load: float) -> ConformalFilm:
             f"sigma_hat = {load:g} takes too many harmonics: waist too narrow"
         )
     return way.film
+
+
+@lru_cache(maxsize=1)
+def lobes_twist() -> float:
+    """Return the sigma_hat at which flat lobes give way to twist that costs nothing."""
+    stable = resolve(go_to_load(_first(), _STABLE), _TAIL)
+    film, _ = locate(stable, go_to_load(stable, _UNSTABLE), TWISTED)
+    return film.load
 
 
 @lru_cache(maxsize=1)

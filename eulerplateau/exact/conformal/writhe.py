@@ -21,7 +21,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.conformal.basis import Basis, Curve
-from eulerplateau.exact.conformal.energy import assemble, assemble_blocks
+from eulerplateau.exact.conformal.energy import Blocks, assemble
 
 # Axes that are tried: through the corners, edges and faces of a cube.
 _AXES = np.array([axis for axis in product((-1, 0, 1), repeat=3) if any(axis)])
@@ -51,9 +51,14 @@ def writhe_hessian(basis: Basis, curve: Curve) -> FloatArray:
     `basis` may have another symmetry than the loop: then this is the block of the
     displacements that have it.
     """
+    return writhe_blocks(curve).matrix(basis)
+
+
+def writhe_blocks(curve: Curve) -> Blocks:
+    """Return the second derivative of what is integrated."""
     p, u = curve.x1, (curve.x1**2).sum(axis=1)[:, None, None]
     across = np.cross(curve.x2, p)
     both = across[:, :, None] * p[:, None, :]
     pp = -1.5 * (both + both.transpose(0, 2, 1)) / u**2.5
     pq = -0.5 * np.cross(np.eye(3), p[:, None, :]) / u**1.5
-    return assemble_blocks(basis, pp / (2 * pi), pq / (2 * pi), None)
+    return Blocks(pp / (2 * pi), pq / (2 * pi), None)

@@ -22,6 +22,7 @@ from eulerplateau.exact.planar.thickness import checked_diameter, is_too_thick
 
 LOBES = range(2, 13)
 
+_CONTACTS = at_first_contact, at_line_contact
 _EXACT = 4 * np.finfo(np.float64).eps
 
 
@@ -67,6 +68,15 @@ def thresholds(lobes: int, diameter: float | None = None) -> Thresholds:
     )
 
 
+def contacts(lobes: int, width: float) -> tuple[float, float]:
+    """Return the loads of both contacts for a diameter of `width` (alpha / sigma)^(1/3).
+
+    As a line has it whose loops of all lengths are asked for; infinite as in Thresholds.
+    """
+    first, line = (_contact(shape, lobes, width) for shape in _CONTACTS)
+    return first, line
+
+
 def checked_lobes(lobes: int) -> int:
     """Return a number of lobes from 2 to 12; SpecError for anything else."""
     return whole_number("lobes", lobes, LOBES[0], LOBES[-1])
@@ -82,6 +92,14 @@ def _onset(shape: Callable[[int, float], Touching], lobes: int, diameter: float)
 
     if too_wide(WIDEST) <= 0:
         return inf
-    parts = shape(lobes, brentq(too_wide, 0.0, WIDEST, xtol=1e-300, rtol=_EXACT))
+    return _contact(shape, lobes, brentq(too_wide, 0.0, WIDEST, xtol=1e-300, rtol=_EXACT))
+
+
+def _contact(shape: Callable[[int, float], Touching], lobes: int, width: float) -> float:
+    """Return the load at which a loop has a shape given by its width."""
+    if width > WIDEST:
+        return inf
+    parts = shape(lobes, width)
+    diameter = width / parts.lobe.sigma ** (1 / 3)
     too_thick = is_too_thick(parts.kappa_max, parts.kappa_min, diameter)
     return inf if too_thick else parts.lobe.sigma

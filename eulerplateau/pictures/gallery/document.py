@@ -65,6 +65,7 @@ def _data(gallery: Gallery) -> dict[str, Any]:
         "kind": first.kind.name,
         "columns": [*first.kind.columns, "special"],
         "load": first.load.column,
+        "loadUnit": first.load.unit,
         "unit": unit,
         "size": stage.size,
         "eye": stage.eye.tolist(),
@@ -95,10 +96,15 @@ def _run(shown: Exhibit, unit: float) -> dict[str, Any]:
         "series": [_series(series) for series in run.series],
         "special": run.special,
         "rows": [
-            [_value(getattr(row, name, None)) for name in (*run.kind.columns, "special")]
+            [_value(_shown(row, name)) for name in (*run.kind.columns, "special")]
             for row in run.rows
         ],
     }
+
+
+def _shown(row: Any, name: str) -> Any:
+    """Return a cell of a row; of what is varied in the unit in which that is shown."""
+    return row.load if name == row.load_name.column else getattr(row, name, None)
 
 
 def _marks(shown: Exhibit) -> str | None:

@@ -5,7 +5,10 @@ const all = curves(gallery);
 const find = (id) => document.getElementById(id);
 const several = gallery.runs.length > 1;
 // Of a loop that resists twist there are more.
-const quantities = QUANTITIES[gallery.kind].filter(({ key }) => gallery.columns.includes(key));
+const quantities = QUANTITIES[gallery.kind]
+  .filter(({ key }) => gallery.columns.includes(key))
+  .map((quantity) => quantity.key === gallery.load && gallery.loadUnit
+    ? { ...quantity, unit: gallery.loadUnit } : quantity);
 const load = quantities.find(({ key }) => key === gallery.load);
 let shown = null; // { curve, place }: place is the row's number in its run
 let film = null;
@@ -21,7 +24,8 @@ function show(curve, place) {
     curve.run.mesh, triangles(curve.run, place), positions(gallery, curve.run, place),
     marks(curve.run, place));
   diagram.mark(row);
-  find("headline").textContent = `${curve.name}: ${load.symbol} = ${text(row[load.key], 7)}`;
+  const value = [text(row[load.key], 7), load.unit].filter(Boolean).join(" ");
+  find("headline").textContent = `${curve.name}: ${load.symbol} = ${value}`;
   find("place").max = curve.places.length - 1;
   find("place").value = place - curve.first;
   find("row").replaceChildren(

@@ -8,6 +8,8 @@ const QUANTITIES = {
     { key: "sigma_hat", label: "tension σ̂", symbol: "σ̂", axis: "x" },
     { key: "link", label: "link", symbol: "Lk", axis: "x" },
     { key: "twist_ratio", label: "rigidities C/B", symbol: "C/B", axis: "x" },
+    { key: "length_m", label: "length", symbol: "L", axis: "x" },
+    { key: "surface_tension_N_per_m", label: "surface tension", symbol: "γ", axis: "x" },
     { key: "abs_kappa_n", label: "⟨|κₙ|⟩", axis: "y" },
     { key: "total_gauss_curvature", label: "⟨K⟩", axis: "y" },
     { key: "energy", label: "energy E", unit: "α/L", axis: "y" },

@@ -15,7 +15,7 @@ from typing import Any
 from eulerplateau.errors import EulerPlateauError, SpecError
 from eulerplateau.runs.continuing import RESULTS
 from eulerplateau.runs.inputs import contents
-from eulerplateau.runs.spec import FILE_KEYS
+from eulerplateau.runs.spec_files import FILE_KEYS
 from eulerplateau.settings import Settings
 
 # What a case may be: where its specification is defined, and what carries it out. Only

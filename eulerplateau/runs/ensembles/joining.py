@@ -20,7 +20,7 @@ from eulerplateau.runs.kinds import Kind
 from eulerplateau.runs.record import kind_of
 from eulerplateau.runs.rows import Record, columns
 from eulerplateau.runs.run_files import read_summary
-from eulerplateau.runs.spec import FILE_KEYS, leaves
+from eulerplateau.runs.spec_files import FILE_KEYS, leaves
 from eulerplateau.runs.table import read_rows, table_content
 
 FAILED = "failed"
@@ -133,7 +133,7 @@ def _found(place: Place) -> _Found:
     for name, row_type in (("sweep", kind.row), ("branches", kind.branch_row)):
         table = place.folder / f"{name}.csv"
         if table.is_file():
-            rows = read_rows(table, row_type, kind.load(about).column)
+            rows = read_rows(table, row_type, kind.quantity(about))
     return _Found(place, about, kind, rows, dict(leaves(about.get("spec", {}))))
 
 

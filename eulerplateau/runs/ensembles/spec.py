@@ -28,9 +28,10 @@ from typing import Any, Literal
 from pydantic import Field
 
 from eulerplateau.errors import SpecError
+from eulerplateau.runs.bench_spec import in_si
 from eulerplateau.runs.ensembles.cases import Case, case_name, spec_type
 from eulerplateau.runs.loads import Refinement, SignedRange
-from eulerplateau.runs.spec import FILE_KEYS, at_home, leaves, located, override
+from eulerplateau.runs.spec_files import FILE_KEYS, at_home, leaves, located, override
 from eulerplateau.settings import Settings, read_toml, unknown_key, validate
 
 # Of one file; all are checked before the first is carried out.
@@ -148,7 +149,7 @@ def _values(key: str, given: Any) -> list[Any]:
     found: list[Any] = []
     for value in given:
         if isinstance(value, dict) and value.keys() == _RANGE:
-            found += _range(key, value)
+            found += _range(key, in_si(f"grid.{key}", value))
         elif isinstance(value, dict) and key in _LISTS:
             found += validate(value, Refinement, f"grid.{key}").values()
         else:
@@ -165,7 +166,7 @@ def _range(key: str, given: dict[str, Any]) -> list[Any]:
 
 def _single(key: str, value: Any) -> Any:
     """Return a value; of a key that takes a list, a number becomes the list of it."""
-    number = isinstance(value, int | float) and not isinstance(value, bool)
+    number = isinstance(value, int | float | str) and not isinstance(value, bool)
     return [value] if key in _LISTS and number else value
 
 

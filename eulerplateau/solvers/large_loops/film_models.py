@@ -27,11 +27,10 @@ from eulerplateau.solvers.models import DenseModels, Model
 from eulerplateau.solvers.second_variation import (
     NewtonStep,
     TangentModel,
-    balanced,
-    orthonormal,
     stability,
     tangent_model,
 )
+from eulerplateau.solvers.tangent_space import balanced, orthonormal
 
 # The residual from which on a loop is far from rest, and shifts that are tried there: the
 # first is as large as the softest bending mode of a bare loop.
@@ -186,9 +185,9 @@ class FilmModels(DenseModels):
         """Return the model at a loop (n, 3)."""
         forces = self.energy.forces(x)
         total = sum(forces[1:], start=forces[0])
-        tensions, unbalanced = balanced(
-            self.energy, x, total, self.energy.free_motions(x), length_metric(self.loop, x)
-        )
+        motions = orthonormal(self.energy, self.energy.free_motions(x))
+        metric = length_metric(self.loop, x)
+        tensions, unbalanced = balanced(self.energy, x, total, motions, metric)
         forces.append(self.energy.constraint.force(x, tensions))
         largest = max(float(np.abs(force).max()) for force in forces)
         return FilmModel(

@@ -63,7 +63,7 @@ def summary(case: dict[str, Any]) -> str:
 def report(cases: list[dict[str, Any]]) -> str:
     """Return the tables as Markdown."""
     lines = [
-        "# Error against run time",
+        "# Newton against conjugate gradients",
         "",
         f"Printed by `scripts/benchmark` on {machine()}. Seconds, median "
         "(least-most) of the repeated runs.",
@@ -147,6 +147,7 @@ def set_ups(cases: list[dict[str, Any]]) -> list[str]:
     lines += [
         "",
         "Exponent of the growth of the accepted time with the vertices:",
+        "",
     ]
     for solver in ("cg-plain", "cg", "newton"):
         for task in ("cold", "warm"):

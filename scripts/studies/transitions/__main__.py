@@ -123,7 +123,7 @@ def tensioned(path: Path | None, film: str) -> None:
 def tell_failures(every: list[Found]) -> None:
     """Print how many loads were solved, and each that did not converge."""
     failures = [text for found in every for text in found.failures]
-    click.echo(f"{sum(f.solves for f in every)} loads, {len(failures)} not converged.")
+    click.echo(f"{sum(f.solves for f in every)} loads, {len(failures)} not converged.\n")
     for text in failures:
         click.echo(f"- {text}")
 

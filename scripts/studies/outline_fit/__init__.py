@@ -1,0 +1,1 @@
+"""How often intervals of films fitted to synthetic outlines hold the truth."""

@@ -79,10 +79,13 @@ def eight_on(mesh: Disk, exact: ThickEight, shift: float = 0.0) -> Equilibrium:
     if film is None:
         raise ArithmeticError(f"no film across {mesh}")
     start = film.shape(along(exact.film, t))
-    rod = (
-        {"twist_ratio": exact.twist_ratio, "link": exact.link} if exact.twist_ratio else {}
+    problem = Problem(
+        mesh,
+        "area",
+        twist_ratio=exact.twist_ratio or None,
+        link=exact.link,
+        diameter=exact.diameter,
     )
-    problem = Problem(mesh, "area", diameter=exact.diameter, **rod)
     return solve(problem, exact.film.load, start)
 
 

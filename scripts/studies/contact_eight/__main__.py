@@ -16,6 +16,7 @@ from eulerplateau.branches.conformal import (
 from eulerplateau.exact.conformal import flat_eight
 from eulerplateau.threads import one_thread
 from scripts.studies.common import markdown_table
+from scripts.studies.contact_eight.on_meshes import table
 
 DIAMETERS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
 NARROW = (0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
@@ -27,14 +28,19 @@ SPLIT = 0.02
 
 @click.command()
 @click.option("--no-loads", is_flag=True, help="Leave out the slow table of loads.")
-def main(no_loads: bool) -> None:
-    """Print films at one load, the formula's error, then loads over diameters."""
+@click.option("--meshes", is_flag=True, help="Print the table of meshes only.")
+def main(no_loads: bool, meshes: bool) -> None:
+    """Print films at one load, the formula's error, meshes, then loads over diameters."""
     with one_thread():
+        if meshes:
+            click.echo(markdown_table(table(), 0))
+            return
         films = [thick_eight(LOAD, d) for d in NARROW]
         turned = [thick_eight(LOAD, d, *ROD) for d in NARROW[:3]]
         click.echo(markdown_table(_numbers(films), 0))
         click.echo(markdown_table(_numbers(turned), 0))
         click.echo(markdown_table(_formula(films), 0))
+        click.echo(markdown_table(table(), 0))
         if not no_loads:
             for row in _loads():
                 click.echo(row)

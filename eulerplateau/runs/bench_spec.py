@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from eulerplateau.errors import SpecError
 from eulerplateau.exact import bending_rigidity
+from eulerplateau.loop import MOST
 from eulerplateau.runs.loads import Refinement, SignedRange
 from eulerplateau.runs.parameters import BENCH
 from eulerplateau.settings import Settings, validate
@@ -46,7 +47,8 @@ SurfaceTension = Annotated[float, *_read(SURFACE_TENSION)]
 class RodSettings(Settings):
     """The line a loop is made of: with a length and a surface tension it sets the load.
 
-    Its twist and its thickness act where the loop says so: loop.twist_ratio = "rod".
+    Its twist and its thickness act where the loop says so: loop.twist_ratio = "rod",
+    loop.diameter = "rod".
 
     Attributes
     ----------
@@ -89,6 +91,16 @@ class RodSettings(Settings):
             problem = 'is missing, as 0.4: loop.twist_ratio = "rod" needs it'
             raise SpecError("rod.poisson_ratio", problem)
         return 1 / (1 + self.poisson_ratio)
+
+    def thickness(self, length: float) -> float:
+        """Return the diameter over a loop's length in m; raises SpecError."""
+        if self.diameter is None:
+            problem = f'is missing, as "{DIAMETER.example}": loop.diameter = "rod" needs it'
+            raise SpecError("rod.diameter", problem)
+        if not self.diameter <= MOST["diameter"] * length:
+            problem = f"is {self.diameter / length:g} of loop.length; should be at most"
+            raise SpecError("rod.diameter", f"{problem} {MOST['diameter']:g} of it")
+        return self.diameter / length
 
 
 def values_in_si(key: str, varied: str, values: Sequence[Any]) -> tuple[list[Any], str]:

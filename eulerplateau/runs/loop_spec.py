@@ -11,6 +11,8 @@ from eulerplateau.loop import MOST
 from eulerplateau.runs.bench_spec import Length
 from eulerplateau.settings import Settings
 
+_Diameter = Annotated[float, Field(gt=0, le=MOST["diameter"])]
+
 
 class LoopSettings(Settings):
     """The loop's bending modulus and length: they turn a film's constant into a load.
@@ -32,8 +34,9 @@ class LoopSettings(Settings):
         Turns that the rod was given before its ends were welded; by default none.
     rest_curvature : float
         The rod's natural curvature over 2 pi / length, that of a circle; by default none.
-    diameter : float
+    diameter : float or "rod"
         The rod's thickness over its length; its strands touch and pass through nothing.
+        "rod" takes it from rod.diameter and length.
     """
 
     alpha: float = Field(default=1.0, gt=0)
@@ -41,7 +44,7 @@ class LoopSettings(Settings):
     twist_ratio: Annotated[float, Field(gt=0)] | Literal["rod"] | None = None
     link: float | None = None
     rest_curvature: float | None = Field(default=None, ge=0)
-    diameter: float | None = Field(default=None, gt=0, le=MOST["diameter"])
+    diameter: _Diameter | Literal["rod"] | None = None
 
     @model_validator(mode="after")
     def _a_rod_needs_a_rigidity(self) -> LoopSettings:

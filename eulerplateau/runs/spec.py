@@ -156,6 +156,10 @@ class RunSpec(Settings):
             raise SpecError("solver.name", problem)
         if self.output.modes:
             raise SpecError("output.modes", "should be 0 with loop.diameter")
+        if self.loop.diameter == "rod" and self.sweep.varied == "length":
+            problem = "should be a number along a length: the rod's would change with it"
+            raise SpecError("loop.diameter", problem)
+        _ = self.diameter
         return self
 
     @model_validator(mode="after")
@@ -196,6 +200,14 @@ class RunSpec(Settings):
         if given != "rod":
             return given
         return (self.rod or RodSettings()).twist_ratio
+
+    @property
+    def diameter(self) -> float | None:
+        """The loop's thickness in units of its length; None where it has none."""
+        given = self.loop.diameter
+        if given != "rod":
+            return given
+        return (self.rod or RodSettings()).thickness(self.loop.length)
 
     @property
     def bench(self) -> BenchLoad | None:

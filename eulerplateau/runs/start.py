@@ -18,7 +18,7 @@ def make_problem(spec: RunSpec, disk: Disk) -> Problem:
         twist_ratio=spec.twist_ratio,
         link=spec.loop.link or 0.0,
         rest_curvature=spec.loop.rest_curvature or 0.0,
-        diameter=spec.loop.diameter,
+        diameter=spec.diameter,
     )
 
 

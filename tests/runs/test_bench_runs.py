@@ -207,6 +207,17 @@ def test_the_rod_says_how_it_resists_twist(mesh: Path) -> None:
     assert problem.loop.parameters["twist_ratio"] == pytest.approx(1 / 1.4, rel=1e-14)
 
 
+def test_the_rod_is_as_thick_as_it_is_over_its_length(mesh: Path) -> None:
+    """0.2 mm in a loop of 20 cm; the load is as without thickness."""
+    tensions = {"parameter": "surface_tension", "values": ["25 mN/m"]}
+    loop = {"length": "20 cm", "diameter": "rod"}
+    run = spec(mesh, film={}, loop=loop, sweep=tensions)
+    problem = make_problem(run, shapes.mesh_of(*shapes.disk_points(3)))
+    assert problem.loop.diameter == pytest.approx(1e-3, rel=1e-14)
+    thin = spec(mesh, film={}, loop={"length": "20 cm"}, sweep=tensions)
+    assert run.loads() == thin.loads()
+
+
 def test_an_ensemble_varies_quantities_with_units(mesh: Path, tmp_path: Path) -> None:
     (tmp_path / "ensemble.toml").write_text(
         f'[mesh]\nfile = "{mesh}"\n[rod]\nyoung_modulus = "2 GPa"\ndiameter = "0.2 mm"\n'
@@ -254,6 +265,12 @@ def test_an_ensemble_varies_quantities_with_units(mesh: Path, tmp_path: Path) ->
             "leave one out",
         ),
         ({"sweep": LENGTHS, "loop": {"twist_ratio": "rod"}}, "rod.poisson_ratio", "0.4"),
+        ({"sweep": LENGTHS, "loop": {"diameter": "rod"}}, "loop.diameter", "a number"),
+        (
+            {"loop": {"diameter": "rod", "length": "1 mm"}, "sweep": {"loads": [1.0]}},
+            "rod.diameter",
+            "at most 0.1",
+        ),
         ({"sweep": LENGTHS, "loop": {"twist_ratio": "rob"}}, "loop.twist_ratio", "'rod'"),
         ({"sweep": LENGTHS, "branches": {"low": "2 mN/m"}}, "branches.low", "length"),
         ({"sweep": LENGTHS, "branches": {"low": "2 kg"}}, "branches.low", "20 cm"),

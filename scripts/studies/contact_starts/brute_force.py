@@ -13,7 +13,7 @@ from scipy.spatial.distance import cdist
 from eulerplateau.arrays import FloatArray
 
 # Points on each edge of which all pairs are looked at.
-_POINTS = 24
+_POINTS = 16
 # The places of the nearest are moved by steps that are halved until they are so short.
 _SHORTEST = 1e-9
 _ROUNDS = 400

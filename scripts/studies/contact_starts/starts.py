@@ -28,8 +28,10 @@ DIAMETERS = 1e-3, 0.05
 TENSIONS = 100.0, 6000.0
 # Times a kick of 1e-3 L, the largest: turned starts are also displaced by a tenth of L.
 _KICKS = 100.0
-# A start that is drawn at random has so many harmonics.
+# A start that is drawn at random has so many harmonics, and is flattened, so that strands
+# come near each other, down to this factor.
 _HARMONICS = 3
+_FLATTEST = 0.01
 # By which part of the diameter strands may overlap, as docs/planar.md says; which part of
 # the largest force a contact may pull with; what the energy may rise by from rounding.
 OVERLAP, PULL, RISE = 1e-2, RESIDUAL_TOLERANCE, 1e-9
@@ -123,7 +125,8 @@ def _loop(disk: Disk, case: Case) -> FloatArray:
         k = np.arange(1, _HARMONICS + 1)
         waves = np.hstack([np.cos(k * angle), np.sin(k * angle)])
         sizes = rng.standard_normal((2 * _HARMONICS, 3)) / np.tile(k**2, 2)[:, None]
-        drawn: FloatArray = waves @ sizes / (2 * pi)
+        flatter = np.exp(rng.uniform(np.log(_FLATTEST), 0.0))
+        drawn: FloatArray = waves @ sizes * [1.0, 1.0, flatter] / (2 * pi)
         return drawn
     x = disk.x[disk.loop] - disk.x[disk.loop].mean(axis=0)
     along = x[:, 0] / np.abs(x[:, 0]).max()

@@ -14,8 +14,6 @@ def check_laws(ends: list[End]) -> None:
     assert converged
     for end in converged:
         assert not end.failures, end
-        # What the energy at the end is held against does not overlap.
-        assert end.overlaps[1] < 1e-2, end
 
 
 @pytest.mark.parametrize("gap", [1e-3, 0.02])
@@ -45,6 +43,7 @@ def test_random_starts_end_without_overlap_or_pull_below_where_they_began() -> N
     # One of each film; of the second strands overlap at first, and touch at the end.
     ends = [run(case(seed)) for seed in (3, 4, 5)]
     assert ends[1].overlaps[0] > 0.0
+    assert ends[1].overlaps[1] < 1e-9
     assert ends[1].contacts > 0
     check_laws(ends)
 

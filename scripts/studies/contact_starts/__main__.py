@@ -72,7 +72,7 @@ def _extremes(ends: Sequence[End]) -> Iterator[list[str]]:
         worst: list[Callable[[End], float]] = [
             lambda end: end.overlaps[1],
             lambda end: end.overlaps[2],
-            lambda end: -end.pull,
+            lambda end: 0.0 - end.pull,
             lambda end: end.rise,
         ]
         shown = [f"{max(map(of, some), default=np.nan):.1e}" for of in worst]

@@ -63,7 +63,8 @@ class End:
     status : the equilibrium's; "not parted" where no loop without overlaps is near the
         start, or the name of an exception
     overlaps : by which part of the diameter strands overlap, by brute force: at the start,
-        when they have been parted, at the end; not positive where they do not
+        when they have been parted, where a bend sharper than the rod still counts, at the
+        end; not positive where they do not
     contacts : how many there are
     pull : the lowest of their forces over the largest force in the loop; 0 without any
     rise : the energy at the end over that of the parted start, less 1

@@ -104,7 +104,7 @@ def _failed(ends: Sequence[End]) -> Iterator[list[str]]:
                 str(told.seed),
                 f"{told.diameter:.4f}",
                 f"{told.tension:.0f}",
-                f"{end.overlaps[2]:.1e}",
+                f"{end.overlaps[2]:.2e}",
                 f"{end.rise:.1e}",
             ]
 

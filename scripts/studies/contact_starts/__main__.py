@@ -1,0 +1,113 @@
+"""Solve random starts of loops with a diameter, and print what became of them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
+from math import inf
+
+import click
+import numpy as np
+
+from eulerplateau.threads import one_thread
+from scripts.studies.common import markdown_table
+from scripts.studies.contact_starts.starts import FILMS, End, case, run
+
+STARTS = 500
+
+
+@click.command()
+@click.option("--starts", default=STARTS, help="How many; default: 500.")
+@click.option("--minutes", default=inf, help="Begin none after so many.")
+def main(starts: int, minutes: float) -> None:
+    """Print how starts ended, how far laws are kept, and every start that breaks one."""
+    until = time.monotonic() + 60 * minutes
+    ends: list[End] = []
+    with one_thread():
+        for seed in range(starts):
+            if time.monotonic() > until:
+                break
+            ends.append(run(case(seed)))
+    click.echo(f"{len(ends)} starts\n")
+    for rows, words in ((_counts(ends), 3), (_extremes(ends), 1), (_failed(ends), 4)):
+        click.echo(markdown_table(rows, words))
+
+
+def _counts(ends: Sequence[End]) -> Iterator[list[str]]:
+    """Yield how many starts ended how, and how many of those are not as they should be."""
+    yield [
+        "film",
+        "start",
+        "status",
+        "starts",
+        "overlapped first",
+        "in contact",
+        "overlaps",
+        "pulls",
+        "rises",
+    ]
+
+    def group(end: End) -> tuple[int, str, str]:
+        return FILMS.index(end.case.film), end.case.kind, end.status
+
+    for (film, kind, status), members in groupby(sorted(ends, key=group), group):
+        some = list(members)
+        failures = [name for end in some for name in end.failures]
+        numbers = [
+            len(some),
+            sum(end.overlaps[0] > 0.0 for end in some),
+            sum(end.contacts > 0 for end in some),
+            *(failures.count(name) for name in ("overlaps", "pulls", "rises")),
+        ]
+        yield [FILMS[film], kind, status, *map(str, numbers)]
+
+
+def _extremes(ends: Sequence[End]) -> Iterator[list[str]]:
+    """Yield the worst of a film's converged starts, and what all of them took."""
+    yield ["film", "overlap / d, parted", "overlap / d", "pull", "rise", "CPU s each"]
+    for film in FILMS:
+        every = [end for end in ends if end.case.film == film]
+        some = [end for end in every if end.converged]
+        worst: list[Callable[[End], float]] = [
+            lambda end: end.overlaps[1],
+            lambda end: end.overlaps[2],
+            lambda end: 0.0 - end.pull,
+            lambda end: end.rise,
+        ]
+        shown = [f"{max(map(of, some), default=np.nan):.1e}" for of in worst]
+        mean = np.mean([end.seconds for end in every]) if every else np.nan
+        yield [film, *shown, f"{mean:.2f}"]
+
+
+def _failed(ends: Sequence[End]) -> Iterator[list[str]]:
+    """Yield every start that is not as it should be, whatever its status."""
+    yield [
+        "film",
+        "start",
+        "status",
+        "fails",
+        "seed",
+        "d",
+        "tension",
+        "overlap / d",
+        "rise",
+    ]
+    for end in ends:
+        if end.failures:
+            told = end.case
+            yield [
+                told.film,
+                told.kind,
+                end.status,
+                ", ".join(end.failures),
+                str(told.seed),
+                f"{told.diameter:.4f}",
+                f"{told.tension:.0f}",
+                f"{end.overlaps[2]:.2e}",
+                f"{end.rise:.1e}",
+            ]
+
+
+if __name__ == "__main__":
+    main()

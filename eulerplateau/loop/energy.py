@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.term import Term, product
+from eulerplateau.loop.term import Term, product, summed
 from eulerplateau.loop.turns import EdgeTurns
 
 
@@ -82,7 +82,7 @@ class LoopEnergy:
 
     def hessian(self, x: FloatArray) -> FloatArray:
         """Return the second derivative: one matrix (n, n) for all coordinates, or full."""
-        return _summed([term.hessian(x) for term in self.terms.values()], len(x))
+        return summed([term.hessian(x) for term in self.terms.values()], len(x))
 
     def lagrangian_hessian(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the second derivative of the energy plus tensions . constraint.
@@ -91,7 +91,7 @@ class LoopEnergy:
         matrix (n, n) for all coordinates, or a full one (d n, d n).
         """
         parts = [term.hessian(x) for term in self.terms.values()]
-        return _summed([*parts, self.constraint.stiffness(x, tensions)], len(x))
+        return summed([*parts, self.constraint.stiffness(x, tensions)], len(x))
 
     def split_hessian(
         self, x: FloatArray, tensions: FloatArray
@@ -108,7 +108,7 @@ class LoopEnergy:
                 parts.append(term.hessian(x))
             else:
                 by_edges += form
-        return _summed(parts, len(x)), by_edges
+        return summed(parts, len(x)), by_edges
 
     def product(self, x: FloatArray, tensions: FloatArray, step: FloatArray) -> FloatArray:
         """Return the same times a step (n, d) that keeps the constraint to first order."""
@@ -138,22 +138,3 @@ class LoopEnergy:
     def reaches(self, x: FloatArray, other: FloatArray) -> bool:
         """Return whether by all terms a short way leads from x to another loop."""
         return all(term.reaches(x, other) for term in self.terms.values())
-
-
-def _summed(parts: list[FloatArray], n: int) -> FloatArray:
-    """Return the sum of matrices (n, n), the same for all coordinates, and full ones."""
-    alike = [part for part in parts if len(part) == n]
-    full = [part for part in parts if len(part) > n]
-    shared = alike[0] if alike else np.zeros((n, n))
-    for part in alike[1:]:
-        shared += part
-    if not full:
-        return shared
-    total = full[0]
-    for part in full[1:]:
-        total += part
-    d = len(total) // n
-    blocks = total.reshape(n, d, n, d)
-    for axis in range(d):
-        blocks[:, axis, :, axis] += shared
-    return total

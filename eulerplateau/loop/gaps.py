@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.loop.term import summed
 
 
 @dataclass(frozen=True)
@@ -81,17 +82,13 @@ class Between:
 
         slides : (k,) bool, whether they are least by s too
         """
-        n, d = self.weights.shape[1], self.normals.shape[1]
         per = (shares / self.distances)[:, None]
         rows = self.jacobian()
-        whole: FloatArray = rows.T @ (-per * rows)
         alike = self.weights.T @ (per * self.weights)
-        blocks = whole.reshape(n, d, n, d)
-        for axis in range(d):
-            blocks[:, axis, :, axis] += alike
+        whole = summed([alike, rows.T @ (-per * rows)], self.weights.shape[1])
         mixed, inverse = self._eliminated(slides)
         moved = np.einsum("k,kef,kfi->kei", shares, inverse, mixed)
-        whole -= mixed.reshape(-1, n * d).T @ moved.reshape(-1, n * d)
+        whole -= mixed.reshape(-1, self._size).T @ moved.reshape(-1, self._size)
         return whole
 
     def _eliminated(self, slides: BoolArray) -> tuple[FloatArray, FloatArray]:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.energy import Constraint, LoopEnergy
-from eulerplateau.loop.gaps import Gaps
+from eulerplateau.loop.gaps import Between, Gaps
 from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.strands import Strands, strands_of
+from eulerplateau.loop.term import summed
 from eulerplateau.loop.turns import EdgeTurns
 
 _STEPS = 30
@@ -28,37 +29,30 @@ class HeldGaps:
     lengths: Constraint
     strands: Strands
     gaps: Gaps
+    _known: list[tuple[FloatArray, Between]] = field(default_factory=list, repr=False)
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         """Return the equations' derivatives (n + k, d n)."""
-        at, _ = self.strands.at(x, self.gaps)
-        return np.vstack([self.lengths.jacobian(x), self.strands.between(x, at).jacobian()])
+        return np.vstack([self.lengths.jacobian(x), self._between(x).jacobian()])
 
     def force(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return J^T tensions (n, d)."""
         n = len(x)
-        at, _ = self.strands.at(x, self.gaps)
-        push = tensions[n:] @ self.strands.between(x, at).jacobian()
+        push = tensions[n:] @ self._between(x).jacobian()
         return self.lengths.force(x, tensions[:n]) + push.reshape(x.shape)
 
     def stiffness(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the second derivative (d n, d n) of tensions . c."""
-        n, d = x.shape
-        at, _ = self.strands.at(x, self.gaps)
-        whole = self.strands.between(x, at).hessian(tensions[n:], at.slides)
+        n = len(x)
         shared = self.lengths.stiffness(x, tensions[:n])
-        blocks = whole.reshape(n, d, n, d)
-        for axis in range(d):
-            blocks[:, axis, :, axis] += shared
-        return whole
+        return summed([shared, self._between(x).hessian(tensions[n:], self.gaps.slides)], n)
 
     def turns(self, x: FloatArray) -> EdgeTurns | None:
         """Return the turns of the edges, with how they change the gaps."""
         turns = self.lengths.turns(x)
         if turns is None or not len(self.gaps):
             return turns
-        at, _ = self.strands.at(x, self.gaps)
-        return replace(turns, others=self.strands.between(x, at).jacobian())
+        return replace(turns, others=self._between(x).jacobian())
 
     def split_stiffness(
         self, x: FloatArray, tensions: FloatArray
@@ -68,8 +62,14 @@ class HeldGaps:
         _, by_edges = self.lengths.split_stiffness(x, tensions[:n])
         if not len(self.gaps):
             return None, by_edges
-        at, _ = self.strands.at(x, self.gaps)
-        return self.strands.between(x, at).hessian(tensions[n:], at.slides), by_edges
+        return self._between(x).hessian(tensions[n:], self.gaps.slides), by_edges
+
+    def _between(self, x: FloatArray) -> Between:
+        """Return what is known between the places, followed to a loop x (n, d)."""
+        if not (self._known and np.array_equal(self._known[0][0], x)):
+            at, _ = self.strands.at(x, self.gaps)
+            self._known[:] = [(x.copy(), self.strands.between(x, at))]
+        return self._known[0][1]
 
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return a loop near by that keeps lengths and gaps, to rounding; None if lost.

@@ -127,3 +127,22 @@ def product(matrix: FloatArray, step: FloatArray) -> FloatArray:
     if len(matrix) == len(step):
         return matrix @ step
     return (matrix @ step.ravel()).reshape(step.shape)
+
+
+def summed(parts: list[FloatArray], n: int) -> FloatArray:
+    """Return the sum of matrices (n, n), the same for all coordinates, and full ones."""
+    alike = [part for part in parts if len(part) == n]
+    full = [part for part in parts if len(part) > n]
+    shared = alike[0] if alike else np.zeros((n, n))
+    for part in alike[1:]:
+        shared += part
+    if not full:
+        return shared
+    total = full[0]
+    for part in full[1:]:
+        total += part
+    d = len(total) // n
+    blocks = total.reshape(n, d, n, d)
+    for axis in range(d):
+        blocks[:, axis, :, axis] += shared
+    return total

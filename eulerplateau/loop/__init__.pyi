@@ -7,7 +7,7 @@ from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
 from .frames import Frame as Frame, directors as directors
 from .free_bending import FreeBending as FreeBending
-from .gaps import NO_GAPS as NO_GAPS, Gaps as Gaps
+from .gaps import NEGATIVE as NEGATIVE, NO_GAPS as NO_GAPS, Gaps as Gaps
 from .held_gaps import HeldGaps as HeldGaps, with_gaps_held as with_gaps_held
 from .lengths import (
     Lengths as Lengths,

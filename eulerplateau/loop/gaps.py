@@ -14,6 +14,9 @@ import numpy as np
 from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.loop.term import summed
 
+# A gap below this, in units of L, is negative: strands overlap.
+NEGATIVE = -1e-11
+
 
 @dataclass(frozen=True)
 class Gaps:

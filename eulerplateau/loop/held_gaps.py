@@ -10,8 +10,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.energy import Constraint, LoopEnergy
 from eulerplateau.loop.gaps import Between, Gaps
-from eulerplateau.loop.loop import Loop
-from eulerplateau.loop.strands import Strands, strands_of
+from eulerplateau.loop.strands import Strands
 from eulerplateau.loop.term import summed
 from eulerplateau.loop.turns import EdgeTurns
 
@@ -114,6 +113,6 @@ class HeldGaps:
         return closing
 
 
-def with_gaps_held(energy: LoopEnergy, loop: Loop, gaps: Gaps) -> LoopEnergy:
+def with_gaps_held(energy: LoopEnergy, strands: Strands, gaps: Gaps) -> LoopEnergy:
     """Return an energy of a loop that has a diameter, with some gaps kept closed."""
-    return replace(energy, constraint=HeldGaps(energy.constraint, strands_of(loop), gaps))
+    return replace(energy, constraint=HeldGaps(energy.constraint, strands, gaps))

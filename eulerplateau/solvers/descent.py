@@ -25,7 +25,7 @@ from eulerplateau.solvers.trust_region import trust_region_step
 
 FIRST_RADIUS = 0.05
 SMALLEST_RADIUS = 1e-12
-LARGEST_RADIUS = 0.5
+_LARGEST_RADIUS = 0.5
 
 # Below this residual the primal-dual iteration is tried, and believed if no loop vertex
 # moves farther than this (in L).
@@ -117,14 +117,23 @@ class Descent:
             if x is not None and gained is not None:
                 moved = x - model.x
                 noise = noise_of(energy, model.x, moved, model.tensions)
-                if gained <= 0.1 * step.promised or (
-                    abs(gained) <= noise and -step.promised <= noise
-                ):
-                    grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
-                    wider = min(2 * radius, LARGEST_RADIUS) if grow else radius
+                wider = accepted(step, gained, noise, radius)
+                if wider is not None:
                     return State(self.models.at(x, model), wider, state.iteration + 1)
             radius = 0.25 * min(step.size, radius)
         return None
+
+
+def accepted(step: NewtonStep, gained: float, noise: float, radius: float) -> float | None:
+    """Return the radius of the next step; None if this has not gained what it promised.
+
+    noise : float, the change of energy that rounding alone can show
+    """
+    at_noise = abs(gained) <= noise and -step.promised <= noise
+    if not (gained <= 0.1 * step.promised or at_noise):
+        return None
+    grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
+    return min(2 * radius, _LARGEST_RADIUS) if grow else radius
 
 
 def noise_of(

@@ -94,10 +94,10 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     if found.contacts is None:
         models = models_for(problem.film, problem.loop, energy)
     else:
-        from eulerplateau.loop import with_gaps_held
+        from eulerplateau.loop import strands_of, with_gaps_held
 
-        places = found.contacts.places
-        models = DenseModels(with_gaps_held(energy, problem.loop, places))
+        strands, places = strands_of(problem.loop), found.contacts.places
+        models = DenseModels(with_gaps_held(energy, strands, places))
     x_loop = film.project(found.shape.x_loop)
     model = models.at(x_loop).dense
     modes = {}

@@ -14,12 +14,12 @@ from functools import cached_property
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
-from eulerplateau.loop import Gaps, LoopEnergy, Strands, passed
+from eulerplateau.loop import NEGATIVE, Gaps, LoopEnergy, Strands, passed
 from eulerplateau.solvers.contact.keeping import Keeping, Touching
 from eulerplateau.solvers.descent import (
     FIRST_RADIUS,
-    LARGEST_RADIUS,
     SMALLEST_RADIUS,
+    accepted,
     at_rounding,
     bounded_step,
     change_of_energy,
@@ -28,10 +28,9 @@ from eulerplateau.solvers.descent import (
 from eulerplateau.solvers.equilibrium import Status
 from eulerplateau.solvers.second_variation import TangentModel, stability
 
-# A gap, in units of L, that is closed; one that is negative; and by which part of the
-# diameter strands may overlap before they are pushed back.
+# A gap, in units of L, that is closed, and by which part of the diameter strands may
+# overlap before they are pushed back.
 CLOSED = 1e-10
-_NEGATIVE = -1e-11
 _DEEP = 0.25
 # Rounds in which gaps are closed that the closing of others has made negative.
 _ROUNDS = 6
@@ -98,12 +97,8 @@ class ContactDescent:
             if reached is not None:
                 x, gaps, noise = reached
                 gained = change_of_energy(self.energy, model.x, x)
-                if gained is not None and (
-                    gained <= 0.1 * step.promised
-                    or (abs(gained) <= noise and -step.promised <= noise)
-                ):
-                    grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
-                    wider = min(2 * radius, LARGEST_RADIUS) if grow else radius
+                wider = None if gained is None else accepted(step, gained, noise, radius)
+                if wider is not None:
                     return self.keeping.moved(state, x, gaps, wider)
             stopped = self._stopped(state, step.moved)
             if stopped is not None:
@@ -138,7 +133,7 @@ class ContactDescent:
 
         None if they overlap too far.
         """
-        near, widths = self.strands.near(x, _NEGATIVE, beside)
+        near, widths = self.strands.near(x, NEGATIVE, beside)
         held, _ = self.strands.at(x, gaps)
         new = self.strands.unlike(near, held)
         if not new.any():

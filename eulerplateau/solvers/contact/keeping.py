@@ -13,7 +13,15 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import BoolArray, FloatArray
-from eulerplateau.loop import ALONG, NO_GAPS, Gaps, HeldGaps, LoopEnergy, Strands, evenly
+from eulerplateau.loop import (
+    ALONG,
+    NO_GAPS,
+    Gaps,
+    LoopEnergy,
+    Strands,
+    evenly,
+    with_gaps_held,
+)
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 
 # The residual below which it is asked whether strands pull, and what counts as pulling:
@@ -106,12 +114,8 @@ class Keeping:
             gaps = replace(gaps, slides=gaps.slides & ~along)
         gaps, _ = self.strands.at(x, gaps)
         gaps = gaps[self.strands.distinct(gaps)]
-        energy = replace(self.energy, constraint=self._held(gaps))
-        model = tangent_model(energy, x)
+        model = tangent_model(with_gaps_held(self.energy, self.strands, gaps), x)
         return Touching(model, gaps, laid, radius, iteration, changes)
-
-    def _held(self, gaps: Gaps) -> HeldGaps:
-        return HeldGaps(self.energy.constraint, self.strands, gaps)
 
     def closed(self, x: FloatArray, gaps: Gaps) -> tuple[FloatArray, Gaps] | None:
         """Return the loop next to x with gaps closed, and them: those that met count once.
@@ -119,7 +123,8 @@ class Keeping:
         None if they cannot be.
         """
         for _ in range(len(gaps) + 1):
-            found = self._held(gaps).project(x)
+            held = with_gaps_held(self.energy, self.strands, gaps).constraint
+            found = held.project(x)
             if found is None:
                 return None
             try:

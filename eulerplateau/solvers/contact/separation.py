@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import HeldGaps, Lengths, Strands, passed
+from eulerplateau.loop import NEGATIVE, HeldGaps, Lengths, Strands, passed
 
 _ROUNDS = 40
 # The rod swells by this factor at a time, from where its strands are nearest.
 _SWELLS = 1.25
-_NEGATIVE = -1e-11
 
 
 def separated(strands: Strands, x: FloatArray) -> FloatArray | None:
@@ -43,7 +42,7 @@ def thinnest(strands: Strands, x: FloatArray) -> float:
 
 def _parted(strands: Strands, x: FloatArray) -> FloatArray | None:
     lengths = Lengths(strands.loop)
-    near, _ = strands.near(x, _NEGATIVE)
+    near, _ = strands.near(x, NEGATIVE)
     held = near
     for _ in range(_ROUNDS):
         if not len(near):
@@ -52,7 +51,7 @@ def _parted(strands: Strands, x: FloatArray) -> FloatArray | None:
         if after is None:
             return None
         x = after
-        near, _ = strands.near(x, _NEGATIVE)
+        near, _ = strands.near(x, NEGATIVE)
         held, _ = strands.at(x, held)
         new = near[strands.unlike(near, held)]
         if not len(new):

@@ -9,7 +9,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import PlanarFilm, planar_film, thresholds
-from eulerplateau.loop import Gaps, with_gaps_held
+from eulerplateau.loop import Gaps, strands_of, with_gaps_held
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import (
     Equilibrium,
@@ -95,7 +95,7 @@ def held_along_lines(edges: int) -> tuple[TangentModel, float]:
     s, t = ((tips + side * flank).ravel() % 1 for side in (1, -1))
     gaps = Gaps(s, t, np.zeros(len(s), dtype=bool))
     energy = loop_energy(problem, load)
-    held = with_gaps_held(energy, problem.loop, gaps)
+    held = with_gaps_held(energy, strands_of(problem.loop), gaps)
     start = held.constraint.project(placed(film, mesh)[mesh.loop, :2])
     assert start is not None
     model = critical_point(held, start)

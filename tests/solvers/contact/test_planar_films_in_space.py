@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from eulerplateau.loop import Gaps, with_gaps_held
+from eulerplateau.loop import Gaps, strands_of, with_gaps_held
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import Equilibrium, Problem, solve, stability, tangent_model
 from tests.helpers import shapes
@@ -60,7 +60,7 @@ def test_a_rod_that_does_not_resist_twist_leaves_the_plane() -> None:
     contacts = saddle.contacts
     gaps = Gaps(contacts.s, contacts.t, contacts.at_a_point)
     energy = loop_energy(problem, POINT, saddle.shape)
-    held = with_gaps_held(energy, problem.loop, gaps)
+    held = with_gaps_held(energy, strands_of(problem.loop), gaps)
     model = tangent_model(held, saddle.shape.x_loop)
     assert model.residual < 1e-9
     assert -model.tensions[disk().n_b :].sum() == pytest.approx(force(saddle), rel=1e-9)

@@ -6,8 +6,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import cast
 
-from scipy.linalg import LinAlgError
-
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import AreaOfLoop, FilmOfLoop
 from eulerplateau.loop import close_with_lengths, largest_turning
@@ -16,20 +14,16 @@ from eulerplateau.solvers.descent import Descent, State
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.large_loops.coarse_start import smoothed
 from eulerplateau.solvers.large_loops.film_models import FilmModels
-from eulerplateau.solvers.models import DenseModels, Model, Models
+from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
+from eulerplateau.solvers.renewal import Reached, elsewhere, near_shapes
 from eulerplateau.threads import one_thread
 
 # Loops of more vertices are not condensed: film and loop are looked at together.
 _DENSE = 48
-# A soap film is sought near the last shape at most so many times in one solve.
-_SHAPES = 60
 # A rough start of a large loop is smoothed to what a loop of so many vertices can show.
 _SMOOTH = DENSE_LOOP // 2
-# The residual at which a film that has tilted from where it was made is made anew: one
-# more step brings it to rest.
-_CLOSE = 1e-5
 # Degrees by which a crumpled loop turns at some vertex: no soap film is sought across it.
 _CRUMPLED = 90.0
 
@@ -87,44 +81,32 @@ def _near(
     max_iterations: int,
     observe: Callable[[FloatArray], None],
 ) -> Equilibrium | None:
-    """Return what a soap film near a shape, on a loop, comes to; None if there is none.
+    """Return what a soap film near a shape, on a loop, comes to; None if there is none."""
 
-    It is known near one shape at a time, so the descent begins again at each it comes to,
-    until it is at rest near its own.
-    """
-    spent, found = 0, None
-    for _ in range(_SHAPES):
-        try:
-            shape = problem.film.prepared(problem.film.carried(shape, x_loop))
-            film = problem.film.of_loop(shape)
-            models = _models(problem, film, load)
-            left = max_iterations - spent
-            descent = Descent(models, left, observe, partial(_elsewhere, film))
-            state, status = descent.run(x_loop)
-        except LinAlgError:
-            return None if found is None else found(Status.STALLED)
-        spent += state.iteration
+    def descend(film: FilmOfLoop, left: int) -> Reached:
+        nonlocal x_loop
+        models = _models(problem, film, load)
+        descent = Descent(models, left, observe, partial(elsewhere, film))
+        state, status = descent.run(x_loop)
         x_loop = state.model.x
-        shape = film.shape(x_loop)
-        found = partial(_record, problem, load, models, shape, state, spent)
-        own = models.energy.holds(x_loop) and film.made_at(x_loop)
-        lost = status is Status.STALLED or problem.pinched(shape)
-        if own or lost or spent >= max_iterations:
-            return found(status)
-    return None if found is None else found(status)
+        return Reached(
+            x=x_loop,
+            iterations=state.iteration,
+            status=status,
+            holds=models.energy.holds(x_loop),
+            lost=lambda shape: status is Status.STALLED or problem.pinched(shape),
+            record=partial(_record, problem, load, models, state),
+        )
 
-
-def _elsewhere(film: FilmOfLoop, model: Model) -> bool:
-    """Return whether a film nearly at rest is not where it was made: it is made anew."""
-    return model.residual < _CLOSE and not film.made_at(model.x)
+    return near_shapes(problem.film, shape, x_loop, max_iterations, descend)
 
 
 def _record(
     problem: Problem,
     load: float,
     models: Models,
-    shape: Shape,
     state: State,
+    shape: Shape,
     spent: int,
     status: Status,
 ) -> Equilibrium:

@@ -18,13 +18,10 @@ from eulerplateau.solvers.contact.keeping import Keeping, Touching
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.second_variation import TangentModel, stability
+from eulerplateau.solvers.renewal import Reached, elsewhere, near_shapes
+from eulerplateau.solvers.second_variation import stability
 from eulerplateau.threads import one_thread
 
-# A soap film is sought near the last shape at most so many times in one solve.
-_SHAPES = 60
-# The residual at which a film that has tilted from where it was made is made anew.
-_CLOSE = 1e-5
 # By which part of the diameter strands may overlap between the vertices they are held at.
 _OVERLAP = 1e-2
 
@@ -50,16 +47,19 @@ def search(
     if x_loop is None:
         return None
     with one_thread():
-        found = _near(problem, start, x_loop, load, max_iterations, observe)
+        lifted = film.lift(x_loop)
+        more = load, max_iterations, observe
+        found = _near(problem, strands, start, lifted, x_loop, *more)
         lost = found is None or found.status is Status.STALLED
         if not lost or problem.film.dimension == 2:
             return found
-        other = _from_tied(problem, x_loop, load, max_iterations, observe)
+        other = _from_tied(problem, strands, x_loop, *more)
         return other if found is None or (other is not None and other.converged) else found
 
 
 def _from_tied(
     problem: Problem,
+    strands: Strands,
     x_loop: FloatArray,
     load: float,
     max_iterations: int,
@@ -72,18 +72,20 @@ def _from_tied(
     tied = problem.tied_film()
     if tied is None:
         return None
-    energy, strands = tied.energy(problem.loop, load), strands_of(problem.loop)
+    energy = tied.energy(problem.loop, load)
     try:
         state, _ = ContactDescent(energy, strands, max_iterations).run(x_loop)
     except LinAlgError:
         return None
-    shape = tied.shape(state.model.x)
-    return _near(problem, shape, state.model.x, load, max_iterations, observe)
+    x, more = state.model.x, (load, max_iterations, observe)
+    return _near(problem, strands, tied.shape(x), tied.lift(x), x, *more)
 
 
 def _near(
     problem: Problem,
+    strands: Strands,
     shape: Shape,
+    lifted: FloatArray,
     x_loop: FloatArray,
     load: float,
     max_iterations: int,
@@ -91,48 +93,42 @@ def _near(
 ) -> Equilibrium | None:
     """Return what a film near a shape, on a loop (n_b, d), comes to; None if there is none.
 
-    A soap film is known near one shape at a time, so the descent begins again at each it
-    comes to, until it is at rest near its own.
+    lifted : (n_b, 3) float, that loop in space
     """
-    spent, found, state, strands = 0, None, None, strands_of(problem.loop)
-    film = problem.film.of_loop(shape)
-    for _ in range(_SHAPES):
-        try:
-            carried = problem.film.carried(shape, film.lift(x_loop))
-            film = problem.film.of_loop(problem.film.prepared(carried))
-            energy = film.energy(problem.loop, load)
-            left, ends = max_iterations - spent, partial(_elsewhere, film)
-            descent = ContactDescent(energy, strands, left, observe, ends)
-            state, status = descent.run(x_loop, state)
-        except LinAlgError:
-            return None if found is None else found(Status.STALLED)
-        spent += state.iteration
+    state: Touching | None = None
+
+    def descend(film: FilmOfLoop, left: int) -> Reached:
+        nonlocal state, x_loop
+        energy = film.energy(problem.loop, load)
+        ends = partial(elsewhere, film)
+        descent = ContactDescent(energy, strands, left, observe, ends)
+        state, status = descent.run(x_loop, state)
         x_loop = state.model.x
-        shape = film.shape(x_loop)
-        found = partial(_record, problem, load, film, shape, state, spent)
-        own = energy.holds(x_loop) and film.made_at(x_loop)
         # A film that gets stuck away from where it was made may not, made anew.
         stuck = status is Status.STALLED and state.iteration == 0
-        if own or stuck or spent >= max_iterations:
-            return found(status)
-    return None if found is None else found(status)
+        return Reached(
+            x=x_loop,
+            iterations=state.iteration,
+            status=status,
+            holds=energy.holds(x_loop),
+            lost=lambda shape: stuck,
+            record=partial(_record, problem, strands, load, film, state),
+        )
 
-
-def _elsewhere(film: FilmOfLoop, model: TangentModel) -> bool:
-    """Return whether a film nearly at rest is not where it was made: it is made anew."""
-    return model.residual < _CLOSE and not film.made_at(model.x)
+    return near_shapes(problem.film, shape, lifted, max_iterations, descend)
 
 
 def _record(
     problem: Problem,
+    strands: Strands,
     load: float,
     film: FilmOfLoop,
-    shape: Shape,
     state: Touching,
+    shape: Shape,
     spent: int,
     status: Status,
 ) -> Equilibrium:
-    strands, tensions = strands_of(problem.loop), state.model.tensions
+    tensions = state.model.tensions
     contacts = _contacts(strands, film, state)
     if contacts.doubtful.any():
         energy = film.energy(problem.loop, load)

@@ -1,6 +1,6 @@
 from .bench import Bench as Bench, bending_rigidity as bending_rigidity
 from .bench_changes import Twist as Twist, changes as changes, state as state
-from .checks import finite as finite
+from .checks import checked_diameter as checked_diameter, finite as finite
 from .conformal.equilibrium import ConformalFilm as ConformalFilm
 from .conformal.relaxation import relax as relax
 from .estimates import Estimate as Estimate

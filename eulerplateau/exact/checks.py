@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 
+# The largest diameter of a loop, in units of its length.
+_THICKEST = 0.1
+
 
 def whole_number(name: str, value: object, least: int, most: int | None = None) -> int:
     """Return a whole number within limits; SpecError, under its name, for anything else."""
@@ -33,6 +36,15 @@ def finite(name: str, value: object) -> float:
     if not (isfinite(found) and found >= 0):
         shown = value if isinstance(value, (float, int)) else repr(value).splitlines()[0]
         raise SpecError(name, f"found {shown}; should be finite and not negative")
+    return found
+
+
+def checked_diameter(value: object) -> float:
+    """Return a loop's diameter in units of its length; SpecError for anything else."""
+    found = finite("diameter", value)
+    if not 0 < found <= _THICKEST:
+        problem = f"found {found:g}; should be above 0 and at most {_THICKEST:g}"
+        raise SpecError("diameter", problem)
     return found
 
 

@@ -6,7 +6,8 @@
     by_writhe.py   films of given writhe, from flat ones to pinched ones
     curved.py      films of a rod that is curved by nature: curved_family.py, and its frame,
                    frames.py and rod_term.py
-    films.py       the film at a load, a twist ratio and a link: what is asked for
+    films.py       the film at a load, a twist ratio and a link: what is asked for;
+                   with_rod.py: what is said of any film and its rod
     pinched.py     the flat eight, where they end
     touching.py    films whose strands touch: held apart, and the way from one to another
     contact_eight.py  the twisted eight of a loop with a diameter: what is asked for

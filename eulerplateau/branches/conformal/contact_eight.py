@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from eulerplateau.branches.conformal.curved import NoFilmError
-from eulerplateau.branches.conformal.films import checked, mirrored
+from eulerplateau.branches.conformal.films import checked
 from eulerplateau.branches.conformal.touching import (
     FIRST,
     Touching,
@@ -23,16 +23,14 @@ from eulerplateau.branches.conformal.touching import (
     settled,
     way,
 )
-from eulerplateau.errors import SpecError
-from eulerplateau.exact import finite
+from eulerplateau.branches.conformal.with_rod import WithRod
+from eulerplateau.exact import checked_diameter
 from eulerplateau.exact.conformal import (
     TWISTED,
-    ConformalFilm,
     make_basis,
     nearest_strands,
 )
 
-THICKEST = 0.1
 # A film to begin with, where Newton's method starts (to be converged): the first harmonics
 # of x, y and z, beta and -F, and the crossing angle.
 _BEGIN: Mapping[str, float] = {
@@ -58,34 +56,24 @@ _TOUCHES = 1e-9
 
 
 @dataclass(frozen=True)
-class ThickEight:
+class ThickEight(WithRod):
     """A twisted eight in contact; lengths in L, energies in alpha / L.
 
     Attributes
     ----------
-    film : its loop, whose energy is that of film and bending
-    energy : of film, bending and twist
+    n_unstable : the Morse index, the strands in contact
     contact_force : F = dE/dd, in alpha / L^2
     crossing_angle : the acute angle between the tangents where they touch, degrees
     smallest_gap : of all points of the tube's centre line, less the diameter
     convexity : the least second derivative of the strands' distance, times the diameter
-    n_unstable : the Morse index, the strands in contact
     energy_error : relative, what is left from truncation, roughly
     """
 
-    film: ConformalFilm
     diameter: float
-    twist_ratio: float
-    link: float
-    energy: float
-    twist_energy: float
-    writhe: float
-    twist_moment: float
     contact_force: float
     crossing_angle: float
     smallest_gap: float
     convexity: float
-    n_unstable: int
     energy_error: float
 
     @property
@@ -121,12 +109,7 @@ class ThickEight:
         if refusal is not None:
             return {"diameter": self.diameter, "status": self.status, "reason": refusal}
         return {
-            "energy": self.energy,
-            "area": self.film.area,
-            "bending": self.film.bending,
-            "twist_energy": self.twist_energy,
-            "writhe": self.writhe,
-            "twist_moment": self.twist_moment,
+            **self.parts(),
             "waist": self.diameter,
             "contact_force": self.contact_force,
             "crossing_angle": self.crossing_angle,
@@ -158,18 +141,10 @@ def thick_eight(
     checked(load, twist_ratio, link)
     checked_diameter(diameter)
     if link < 0:
-        return _mirror_image(thick_eight(load, diameter, twist_ratio, -link))
+        return thick_eight(load, diameter, twist_ratio, -link).mirrored()
     values = {"load": load, "twist_ratio": twist_ratio, "link": link, "diameter": diameter}
     coarse, fine = refined(touching(values))
     return _measured(coarse, fine)
-
-
-def checked_diameter(diameter: float) -> float:
-    """Return a diameter; raises SpecError unless it lies between 0 and THICKEST."""
-    if not 0 < finite("diameter", diameter) <= THICKEST:
-        problem = f"found {diameter:g}; should be above 0, up to {THICKEST:g}"
-        raise SpecError("diameter", problem)
-    return diameter
 
 
 def touching(values: Mapping[str, float]) -> Touching:
@@ -239,15 +214,4 @@ def _measured(coarse: Touching, fine: Touching) -> ThickEight:
         convexity=fine.convexity,
         n_unstable=family.in_space(point).n_unstable,
         energy_error=_LEFT * change,
-    )
-
-
-def _mirror_image(found: ThickEight) -> ThickEight:
-    """Return the mirror image, of a rod turned the other way."""
-    return replace(
-        found,
-        film=mirrored(found.film),
-        link=-found.link,
-        writhe=-found.writhe,
-        twist_moment=-found.twist_moment,
     )

@@ -13,12 +13,12 @@ from itertools import chain, pairwise
 from scipy.optimize import brentq
 
 from eulerplateau.branches.conformal.contact_eight import (
-    checked_diameter,
     reached,
     touching,
 )
 from eulerplateau.branches.conformal.films import checked
 from eulerplateau.branches.conformal.touching import Touching, way
+from eulerplateau.exact import checked_diameter
 from eulerplateau.exact.conformal import TWISTED, make_basis
 
 # Where the search begins, the loads up to which it goes, and to what part one is found.

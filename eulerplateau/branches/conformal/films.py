@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from itertools import chain, pairwise
 
@@ -24,13 +24,13 @@ from eulerplateau.branches.conformal.by_writhe import (
 from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
+from eulerplateau.branches.conformal.with_rod import WithRod
 from eulerplateau.branches.point import BranchPoint, ahead, point_near
 from eulerplateau.errors import SpecError
 from eulerplateau.exact import finite
 from eulerplateau.exact.conformal import (
     BUCKLING,
     TWISTED,
-    ConformalFilm,
     disk,
     edge,
     make_basis,
@@ -54,25 +54,14 @@ class Start(Enum):
 
 
 @dataclass(frozen=True)
-class RodFilm:
-    """A film of true area bounded by a rod; lengths in L, energies in alpha / L.
+class RodFilm(WithRod):
+    """A film that is held by nothing but its rod.
 
     Attributes
     ----------
-    film : its loop, whose energy is that of film and bending
-    energy : film, bending and twist together
-    n_unstable : the Morse index
     tail : the relative error of truncation, roughly, of the loop and of a frame
     """
 
-    film: ConformalFilm
-    twist_ratio: float
-    link: float
-    energy: float
-    twist_energy: float
-    writhe: float
-    twist_moment: float
-    n_unstable: int
     tail: float
 
     @property
@@ -84,12 +73,7 @@ class RodFilm:
         """Return what is said of it, by names."""
         frame = edge(self.film)
         return {
-            "energy": self.energy,
-            "area": self.film.area,
-            "bending": self.film.bending,
-            "twist_energy": self.twist_energy,
-            "writhe": self.writhe,
-            "twist_moment": self.twist_moment,
+            **self.parts(),
             "abs_kappa_n": frame.abs_kappa_n,
             "total_gauss_curvature": frame.total_gauss_curvature,
             "waist": waist(self.film),
@@ -130,7 +114,7 @@ def rod_film(
     """
     checked(load, twist_ratio, link, rest_curvature)
     if start is Start.LOBES and link < 0:
-        return _mirror_image(rod_film(start, load, twist_ratio, -link, tell=tell))
+        return rod_film(start, load, twist_ratio, -link, tell=tell).mirrored()
     values = {"load": load, "twist_ratio": twist_ratio, "link": link}
     found = _straight_rod(start, values, tell)
     return _measured(curved(found, rest_curvature, tell) if rest_curvature else found)
@@ -280,21 +264,3 @@ def _measured(point: BranchPoint) -> RodFilm:
         n_unstable=family.in_space(point).n_unstable,
         tail=family.tail(point.x),
     )
-
-
-def _mirror_image(found: RodFilm) -> RodFilm:
-    """Return the mirror image in the plane z = 0, of a rod turned the other way."""
-    return replace(
-        found,
-        film=mirrored(found.film),
-        link=-found.link,
-        writhe=-found.writhe,
-        twist_moment=-found.twist_moment,
-    )
-
-
-def mirrored(film: ConformalFilm) -> ConformalFilm:
-    """Return the mirror image of a film in the plane z = 0."""
-    coefficients = film.coefficients.copy()
-    coefficients[film.basis.slices[2]] *= -1
-    return replace(film, coefficients=coefficients)

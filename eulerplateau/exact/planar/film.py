@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.checks import finite
+from eulerplateau.exact.checks import checked_diameter, finite
 from eulerplateau.exact.planar.buckled import buckled, excess
 from eulerplateau.exact.planar.contact import (
     WIDEST,
@@ -29,7 +29,6 @@ from eulerplateau.exact.planar.halves import (
 from eulerplateau.exact.planar.limits import checked_lobes
 from eulerplateau.exact.planar.thickness import (
     TooThickError,
-    checked_diameter,
     is_too_thick,
 )
 
@@ -162,7 +161,7 @@ def planar_film(lobes: int, tension: float, diameter: float | None = None) -> Pl
         If the loop's curvature would exceed 2/d.
     """
     lobes, tension = checked_lobes(lobes), finite("tension", tension)
-    diameter = checked_diameter(diameter)
+    diameter = 0.0 if diameter is None else checked_diameter(diameter)
     film = _film(lobes, tension, diameter)
     if is_too_thick(film.kappa_max, film.kappa_min, diameter):
         sharpest = max(film.kappa_max, -film.kappa_min)

@@ -10,7 +10,7 @@ from math import inf
 import numpy as np
 from scipy.optimize import brentq
 
-from eulerplateau.exact.checks import whole_number
+from eulerplateau.exact.checks import checked_diameter, whole_number
 from eulerplateau.exact.planar.buckled import sigma_buckling
 from eulerplateau.exact.planar.contact import (
     WIDEST,
@@ -18,7 +18,7 @@ from eulerplateau.exact.planar.contact import (
     at_first_contact,
     at_line_contact,
 )
-from eulerplateau.exact.planar.thickness import checked_diameter, is_too_thick
+from eulerplateau.exact.planar.thickness import is_too_thick
 
 LOBES = range(2, 13)
 
@@ -59,7 +59,8 @@ def thresholds(lobes: int, diameter: float | None = None) -> Thresholds:
     SpecError
         If an argument is no such number.
     """
-    lobes, diameter = checked_lobes(lobes), checked_diameter(diameter)
+    lobes = checked_lobes(lobes)
+    diameter = 0.0 if diameter is None else checked_diameter(diameter)
     return Thresholds(
         lobes,
         sigma_buckling(lobes),

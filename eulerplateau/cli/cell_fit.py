@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eulerplateau.cli.options import writes_to
+from eulerplateau.cli.options import FIGURES, writes_to
 
 if TYPE_CHECKING:
     from eulerplateau.cli.area_table import AreaTable
     from eulerplateau.exact.cell import AreaFit, Estimate
 
-_FORMATS = (".png", ".pdf", ".svg")
 # What the command line calls the arguments of `fit_areas`.
 _OPTIONS = {name: f"--{name.replace('_', '-')}" for name in ("rest_radius", "level")}
 _PARAMETERS = ("sigma", "alpha", "rest_radius")
@@ -60,8 +59,8 @@ def fit(
     from eulerplateau.errors import OutputError, SpecError
     from eulerplateau.exact.cell import fit_areas
 
-    if out is not None and out.suffix.lower() not in _FORMATS:
-        raise click.BadParameter(f"{out}: should end in {', '.join(_FORMATS)}")
+    if out is not None and out.suffix.lower() not in FIGURES:
+        raise click.BadParameter(f"{out}: should end in {', '.join(FIGURES)}")
     table = read_areas(data)
     if relative and table.error is not None:
         raise SpecError("--relative", f"{data} has errors; leave one of them out")

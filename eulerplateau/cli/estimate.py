@@ -91,7 +91,7 @@ def _numbers(bench: Any, diameter: float | None, poisson: float | None) -> dict[
     """Return what is printed as JSON, in units of the SI."""
     from dataclasses import asdict
 
-    from eulerplateau.exact import Twist, changes, state
+    from eulerplateau.exact import Twist, changes, isotropic_twist_ratio, state
     from eulerplateau.film import SPRING_LOAD
 
     relative = None if diameter is None else diameter / bench.length
@@ -103,7 +103,7 @@ def _numbers(bench: Any, diameter: float | None, poisson: float | None) -> dict[
         "diameter": relative,
         "elastocapillary_length": bench.elastocapillary_length,
         "bending_rigidity": bench.rigidity,
-        "twist_ratio": None if poisson is None else 1 / (1 + poisson),
+        "twist_ratio": None if poisson is None else isotropic_twist_ratio(poisson),
         "film": {twist.value: state(bench.load, twist, relative) for twist in Twist},
         "loads": loads,
         "lengths": {

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eulerplateau.cli.bench_options import line_options, quantity, rigidity
-from eulerplateau.cli.options import writes_to
+from eulerplateau.cli.options import FIGURES, writes_to
 
 if TYPE_CHECKING:
     from eulerplateau.exact import Estimate, OutlineFit
 
-_FORMATS = (".png", ".pdf", ".svg")
 _SURFACE_TENSION = "mN/m"
 # What the command line calls the arguments of the fits.
 _OPTIONS = {"lobes": "--lobes", "level": "--level"}
@@ -69,8 +68,8 @@ def fit(
     from eulerplateau.exact import fit_outline, fit_racket
     from eulerplateau.threads import one_thread
 
-    if out is not None and out.suffix.lower() not in _FORMATS:
-        raise SpecError("--out", f"found {out}; should end in {', '.join(_FORMATS)}")
+    if out is not None and out.suffix.lower() not in FIGURES:
+        raise SpecError("--out", f"found {out}; should end in {', '.join(FIGURES)}")
     if racket and lobes is not None:
         raise SpecError("--lobes", "is for films; a racket has none: leave it out")
     stiffness = rigidity(young, diameter, bending_rigidity)

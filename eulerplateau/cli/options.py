@@ -10,6 +10,8 @@ import click
 from click.shell_completion import CompletionItem
 
 F = TypeVar("F", bound=Callable[..., Any])
+# What a figure's file may end in.
+FIGURES = (".png", ".pdf", ".svg")
 Offer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]
 
 

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import click
 
-from eulerplateau.cli.options import writes_to
+from eulerplateau.cli.options import FIGURES, writes_to
 
 _WHAT = ("diagram", "energy", "curvature", "eigenvalue", "contact", "onset")
-_FORMATS = (".png", ".pdf", ".svg")
 
 
 @click.command()
@@ -38,8 +37,8 @@ def plot(folders: tuple[Path, ...], out: Path, what: str, quiet: bool) -> None:
     from eulerplateau.pictures import check_plot, draw_comparison, fit_onset
     from eulerplateau.runs import read_runs
 
-    if out.suffix.lower() not in _FORMATS:
-        raise click.BadParameter(f"{out}: should end in {', '.join(_FORMATS)}")
+    if out.suffix.lower() not in FIGURES:
+        raise click.BadParameter(f"{out}: should end in {', '.join(FIGURES)}")
     runs = read_runs(folders)
     check_plot(runs, what)
     if what == "onset":

@@ -1,4 +1,8 @@
-from .bench import Bench as Bench, bending_rigidity as bending_rigidity
+from .bench import (
+    Bench as Bench,
+    bending_rigidity as bending_rigidity,
+    isotropic_twist_ratio as isotropic_twist_ratio,
+)
 from .bench_changes import Twist as Twist, changes as changes, state as state
 from .checks import checked_diameter as checked_diameter, finite as finite
 from .conformal.equilibrium import ConformalFilm as ConformalFilm

@@ -20,6 +20,11 @@ def bending_rigidity(young: float, diameter: float) -> float:
     return young * pi * square * square / 64
 
 
+def isotropic_twist_ratio(poisson: float) -> float:
+    """Return C / B of a round line of an isotropic material, by its Poisson's ratio."""
+    return 1 / (1 + poisson)
+
+
 @dataclass(frozen=True)
 class Bench:
     """A loop in a film, in units of the SI.

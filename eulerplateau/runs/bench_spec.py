@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, model_validator
 
 from eulerplateau.errors import SpecError
-from eulerplateau.exact import bending_rigidity
+from eulerplateau.exact import bending_rigidity, isotropic_twist_ratio
 from eulerplateau.loop import MOST
 from eulerplateau.runs.loads import Refinement, SignedRange
 from eulerplateau.runs.parameters import BENCH
@@ -90,7 +90,7 @@ class RodSettings(Settings):
         if self.poisson_ratio is None:
             problem = 'is missing, as 0.4: loop.twist_ratio = "rod" needs it'
             raise SpecError("rod.poisson_ratio", problem)
-        return 1 / (1 + self.poisson_ratio)
+        return isotropic_twist_ratio(self.poisson_ratio)
 
     def thickness(self, length: float) -> float:
         """Return the diameter over a loop's length in m; raises SpecError."""

@@ -119,8 +119,7 @@ class _Lobed:
         n = self.film.lobes
         found = self.film.points(t - 0.5 / n)
         angle = pi / n
-        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        return Points(found.kappa, found.angle + angle, found.x @ turn)
+        return Points(found.kappa, found.angle + angle, found.x @ rotation(angle).T)
 
 
 @lru_cache(maxsize=64)
@@ -181,3 +180,9 @@ class _Head:
 
 
 _HEAD = _Head()
+
+
+def rotation(angle: float) -> FloatArray:
+    """Return the rotation (2, 2) by an angle, of columns."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])

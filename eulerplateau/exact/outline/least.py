@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.outline.curves import C
+from eulerplateau.exact.outline.curves import C, rotation
 from eulerplateau.exact.outline.matching import Matching
 from eulerplateau.exact.outline.noise import Noise, estimate
 from eulerplateau.exact.outline.starts import Start
@@ -62,8 +62,7 @@ class Found(Generic[C]):
         found = self.curves.curve(self.theta[:count]).points(grid)
         outwards = np.stack([np.sin(found.angle), -np.cos(found.angle)], -1)
         x = exp(log_size) * found.x + self.matching.offset * outwards
-        cosine, sine = np.cos(angle), np.sin(angle)
-        return np.asarray(x @ np.array([[cosine, sine], [-sine, cosine]]) + place)
+        return np.asarray(x @ rotation(angle).T + place)
 
 
 def least(

@@ -13,7 +13,7 @@ from typing import Generic, NamedTuple
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.outline.curves import C, Curve
+from eulerplateau.exact.outline.curves import C, Curve, rotation
 from eulerplateau.exact.planar.halves import Points
 
 _NODES = 512
@@ -57,7 +57,7 @@ class Matching(Generic[C]):
         count = self.curves.numbers
         shape, (log_size, *place, angle) = unknowns[:count], unknowns[count:]
         curve, size = self.curves.curve(shape), float(np.exp(log_size))
-        turn = _rotation(angle)
+        turn = rotation(angle)
         own = (self.points - place) @ turn / size
         t = self._feet(curve, own)
         foot = curve.points(t)
@@ -110,9 +110,3 @@ def _ahead(foot: Points, own: FloatArray) -> FloatArray:
     inwards = -away[:, 0] * sine + away[:, 1] * cosine
     # Beyond the centre of curvature the nearest point is no minimum of its neighbours.
     return np.asarray(along / np.maximum(1 - foot.kappa * inwards, 0.2))
-
-
-def _rotation(angle: float) -> FloatArray:
-    """Return the rotation (2, 2) from the curve's frame to the outline's."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[cosine, -sine], [sine, cosine]])

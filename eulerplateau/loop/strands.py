@@ -19,6 +19,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -46,6 +47,14 @@ _BESIDE = 0.75
 _FOLLOWED = 5.0
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
 _SPREAD = 0.03
+
+
+class _Curve(NamedTuple):
+    """A loop's vertices (n, d), its cubics (n, 4, d) and where they begin (n + 1,)."""
+
+    x: FloatArray
+    pieces: FloatArray
+    knots: FloatArray
 
 
 @dataclass(frozen=True)
@@ -102,17 +111,15 @@ class Strands:
         `beside` strands do not touch at a point, however they part; those are on edges
         where the first of them is on its own.
         """
-        x = np.ascontiguousarray(x)
-        limits = self.diameter + reach, self.apart
-        pieces = self._pieces(x)
-        curve = x, pieces, self.knots
-        bends = 2 * np.linalg.norm(pieces[:, 1], axis=1) * self.loop.rest_lengths**2
-        sagging = _SAGGING * float(bends.max())
-        pairs = _rows(partial(nearest_pairs, *curve, *limits, sagging), 4)
+        curve = self._curve(x)
+        pairs = self._least(curve, reach)
         points = Gaps(pairs[:, 0], pairs[:, 1], np.ones(len(pairs), dtype=bool))
         crossing = (pairs[:, 3] >= _PARTING) & self.unlike(points, beside, ALONG)
         looked_for = partial(
-            nearest_to_places, *curve, offsets(self.knots, beside), *limits
+            nearest_to_places,
+            *curve,
+            offsets(self.knots, beside),
+            *self._limits(reach),
         )
         rows = _rows(looked_for, 6)
         least = Gaps(rows[:, 3], rows[:, 4], np.zeros(len(rows), dtype=bool))
@@ -123,6 +130,27 @@ class Strands:
         slides = np.arange(len(pairs) + len(rows)) < len(pairs)
         found = np.vstack([pairs[:, :3], rows[:, :3]])
         return Gaps(found[:, 0], found[:, 1], slides), found[:, 2] - self.diameter
+
+    def smallest_gap(self, x: FloatArray, reach: float) -> float:
+        """Return the least of all gaps, between places where they are held too.
+
+        Infinite if none is below reach.
+        """
+        least = self._least(self._curve(x), reach)
+        return float(least[:, 2].min(initial=np.inf) - self.diameter)
+
+    def _least(self, curve: _Curve, reach: float) -> FloatArray:
+        """Return where distances are least by s and t: rows s, t, D, d2D/ds2 (k, 4)."""
+        bends = 2 * np.linalg.norm(curve.pieces[:, 1], axis=1) * self.loop.rest_lengths**2
+        sagging = _SAGGING * float(bends.max())
+        return _rows(partial(nearest_pairs, *curve, *self._limits(reach), sagging), 4)
+
+    def _curve(self, x: FloatArray) -> _Curve:
+        return _Curve(np.ascontiguousarray(x), self._pieces(x), self.knots)
+
+    def _limits(self, reach: float) -> tuple[float, float]:
+        """Return the distance below which places are looked for, and `apart`."""
+        return self.diameter + reach, self.apart
 
     def unlike(self, gaps: Gaps, others: Gaps, edges: float = _BESIDE) -> BoolArray:
         """Return which of `gaps` (k,) are farther from others than that, on a strand."""

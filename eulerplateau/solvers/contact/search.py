@@ -153,7 +153,6 @@ def _contacts(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
     curve, between = strands.curve(x), strands.between(x, gaps)
     places = np.stack([curve(gaps.s), curve(gaps.t)])
     _, widths = strands.at(x, gaps)
-    _, near = strands.near(x, 0.5 * strands.diameter)
     pushes = -state.forces @ between.jacobian()
     return Contacts(
         s=gaps.s,
@@ -165,5 +164,5 @@ def _contacts(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
         at_a_point=gaps.slides,
         uncertain=state.uncertain,
         pushes=film.lift(pushes.reshape(x.shape)),
-        smallest_gap=float(near.min(initial=np.inf)),
+        smallest_gap=strands.smallest_gap(x, 0.5 * strands.diameter),
     )

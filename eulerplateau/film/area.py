@@ -129,6 +129,12 @@ class AreaFilm:
         """Return whether triangles lie on each other, and count what they do not span."""
         return is_folded(self.tiling(shape.triangles), shape.x)
 
+    def touches(self, shape: Shape, diameter: float) -> bool:
+        """Return whether the film comes against a rod so thick, or against itself."""
+        from eulerplateau.mesh import film_touches  # only runs with a diameter need it
+
+        return film_touches(shape, 0.5 * diameter)
+
 
 @dataclass(frozen=True)
 class AreaOfLoop:

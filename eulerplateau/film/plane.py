@@ -104,6 +104,10 @@ class PlaneFilm:
         few = is_sparse(self.soap.tiling(shape.triangles))
         return not few and self.soap.folded(shape)
 
+    def touches(self, shape: Shape, diameter: float) -> bool:
+        """Return False: in its plane strands meet before a film does."""
+        return False
+
 
 @dataclass(frozen=True)
 class PlaneOfLoop:

@@ -60,6 +60,9 @@ class Film(Protocol):
     def folded(self, shape: Shape) -> bool:
         """Return whether triangles lie on each other, and count what they do not span."""
 
+    def touches(self, shape: Shape, diameter: float) -> bool:
+        """Return whether the film comes against a rod so thick, or against itself."""
+
 
 class FilmOfLoop(Protocol):
     """A film with its inside eliminated: a function of its loop, good near one shape.

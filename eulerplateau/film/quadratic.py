@@ -102,6 +102,10 @@ class QuadraticFilm:
         """Return False: what weights at rest span is known whatever triangles do."""
         return False
 
+    def touches(self, shape: Shape, diameter: float) -> bool:
+        """Return False: springs pass through each other, and through the loop."""
+        return False
+
 
 @dataclass(frozen=True)
 class QuadraticOfLoop:

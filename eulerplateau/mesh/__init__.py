@@ -7,7 +7,8 @@
     readers/     what a file holds, format by format; mending.py: a disk made of it, by the
                  steps of cleaning.py
     measures.py  the numbers of a shape that become columns of sweep.csv, on curvature.py,
-                 waist.py (twist) and crossings.py (self-intersections)
+                 waist.py (twist) and crossings.py (self-intersections);
+                 film_contact.py: whether a film comes against its rod
     drawing/     how a film is drawn, in a child process: one shape, or those of a run
     triangles.py areas, angles, neighbours; whole_files.py: a whole file or none
 

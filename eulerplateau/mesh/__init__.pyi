@@ -6,6 +6,7 @@ from .files import (
     write_mesh as write_mesh,
 )
 from .filling import fill_polygon as fill_polygon
+from .film_contact import film_touches as film_touches
 from .generation import generate as generate
 from .making import mesh_polygon as mesh_polygon
 from .measures import Measurer as Measurer, Measures as Measures, measure as measure

@@ -44,6 +44,7 @@ class Status(Enum):
     TOUCHING = "touching"
     COLLAPSED = "collapsed"
     TOO_THICK = "too_thick"
+    FILM_TOUCHED = "film_touched"
 
     @property
     def advice(self) -> str:
@@ -62,6 +63,7 @@ _ADVICE = {
     Status.TOUCHING: "the edge meets itself: a smaller load, or softer adhesions",
     Status.COLLAPSED: "two adhesions have met: leave one out, or make them stiffer",
     Status.TOO_THICK: "the loop bends more than a rod of its diameter can: a thinner one",
+    Status.FILM_TOUCHED: "the film comes against rod or film, which nothing holds off here",
     Status.UNRESOLVED: "the loop turns by over 30 degrees at a vertex: use a finer mesh",
 }
 

@@ -270,8 +270,9 @@ class Problem:
         FOLDED if triangles of a soap film lie on each other, whose area is not spanned. And
         PINCHED if a soap film has run out of width: between strands that meet no disk
         is left to span, and what a solver makes of the mesh there means nothing; or if
-        strands of a twisted rod meet, which do not pass through each other. Every
-        solution passes here before anybody sees it, whatever method found it.
+        strands of a twisted rod meet, which do not pass through each other. FILM_TOUCHED
+        if the film on a loop that has a diameter comes against the rod or against itself.
+        Every solution passes here before anybody sees it, whatever method found it.
         """
         loop = found.status is not Status.NOT_FINITE and found.length_error < _CLOSED
         if loop and self.pinched(found.shape):
@@ -285,4 +286,7 @@ class Problem:
             return replace(found, status=Status.UNRESOLVED)
         if self.film.folded(found.shape):
             return replace(found, status=Status.FOLDED)
+        thick = self.loop.diameter
+        if thick is not None and self.film.touches(found.shape, thick):
+            return replace(found, status=Status.FILM_TOUCHED)
         return found

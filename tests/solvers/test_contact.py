@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -213,6 +214,24 @@ def test_force_and_index_stay_when_the_mesh_is_shifted_along_the_loop() -> None:
     coarse, fine = spread(8), spread(12)
     assert coarse < 1e-3
     assert np.log(coarse / fine) / np.log(12 / 8) > 2.5
+
+
+def test_a_soap_film_that_passes_through_itself_is_no_equilibrium() -> None:
+    mesh = disk()
+    problem = Problem(mesh, "area", diameter=0.02)
+    flat = solve(problem, 500.0)
+    assert flat.status is Status.CONVERGED
+    # Two bumps of the film that lean across each other.
+    rest, place = flat.shape.x, np.array([0.07, 0.0, 0.0])
+    bumps = np.zeros_like(rest)
+    for side in (place, -place):
+        height = np.exp(-((rest - side) ** 2).sum(axis=1) / 0.03**2)
+        bumps += np.outer(height, [-2 * side[0], 0.0, 0.1])
+    crossed_film = replace(flat, shape=flat.shape.moved(rest + bumps))
+    assert problem.classified(crossed_film).status is Status.FILM_TOUCHED
+    # Springs pass through each other, and without a diameter it is not looked at.
+    for other in (Problem(mesh, diameter=0.02), Problem(mesh, "area")):
+        assert other.classified(crossed_film).status is Status.CONVERGED
 
 
 def test_a_loop_without_a_diameter_loads_nothing_of_contact() -> None:

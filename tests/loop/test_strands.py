@@ -89,6 +89,16 @@ def test_no_pair_of_strands_is_missed_and_none_is_invented(seed: int, d: int) ->
         assert off.min(axis=1, initial=np.inf).max(initial=0.0) < 1e-6
 
 
+def test_a_rod_s_own_bend_is_no_contact() -> None:
+    """Two places are as near as a half circle lets them: pi d / 2 along the loop."""
+    x = tangle(0, d=2)
+    s, t = brute(strands_on(x), x, 0.03)[0, :2]
+    along = min(t - s, 1 - (t - s))
+    for part, count in ((0.99, 1), (1.01, 0)):
+        thick = strands_on(x, part * 2 * along / np.pi)
+        assert len(thick.near(x, 0.0)[0]) == count
+
+
 def held(strands: Strands, x: FloatArray, slides: bool) -> Gaps:
     """Gaps of one kind, at all places where strands cross."""
     gaps, widths = strands.near(x, 0.03)

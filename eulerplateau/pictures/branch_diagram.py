@@ -125,7 +125,7 @@ def _mark(
 ) -> None:
     """Mark the special points on the curves of a panel."""
     for branch in branches:
-        for values in what.values(branch):
+        for values in what.curves(branch):
             for row, value in zip(branch.rows, values, strict=True):
                 if row.special is not None:
                     ax.plot(row.load, value, **_MARKERS[kinds[row.special]])

@@ -22,7 +22,7 @@ from eulerplateau.pictures.figure import (
     VERMILION,
     frame,
 )
-from eulerplateau.runs import Quantity, Series
+from eulerplateau.runs import Quantity, Series, without_noise
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -50,6 +50,7 @@ class Panel:
     ----------
     label : str, of the axis
     values : of a series of n rows the curves (n,), one, or one for each side of a film
+    error : of a row, below which it is zero; a curve that is throughout is drawn so
     jump : float; a branch has a gap where its curve changes by more from point to point
     solid_only : bool, whether the range is that of the solid curves and the others may
         leave it
@@ -60,12 +61,20 @@ class Panel:
 
     label: str
     values: Callable[[Series], Sequence[FloatArray]]
+    error: Callable[[Any], float] | None = None
     jump: float = np.inf
     solid_only: bool = False
     logarithmic: bool = False
     zero: bool = False
     ticks: Sequence[float] | None = None
     limits: Band | None = None
+
+    def curves(self, series: Series) -> Sequence[FloatArray]:
+        """Return the curves (n,) of a series as they are drawn, free of rounding's noise."""
+        values = self.values(series)
+        if self.error is None:
+            return values
+        return [without_noise(series.rows, one, self.error) for one in values]
 
 
 def panel(label: str, quantity: Quantity, **options: Any) -> Panel:
@@ -191,7 +200,7 @@ def _draw(ax: Axes, what: Panel, curves: Sequence[Curve]) -> None:
         named.add(label)
         return None if known else label
 
-    drawn = [(s, values, look) for s, look in curves for values in what.values(s)]
+    drawn = [(s, values, look) for s, look in curves for values in what.curves(s)]
     for series, values, look in drawn:
         for piece in series.pieces(values, what.jump):
             style = look.solid if piece.solid else look.dashed

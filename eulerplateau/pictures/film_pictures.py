@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from math import pi
+from math import asin, degrees, pi
 from pathlib import Path
 from typing import Any, cast
 
@@ -30,9 +30,7 @@ from eulerplateau.runs import (
 # A planar film's twist jumps by half turns where its rim passes through itself.
 _JUMP = 90.0
 
-_BENT = panel(
-    ABS_KAPPA_N, lambda row: row.abs_kappa_n, error=FLAT_ERRORS["abs_kappa_n"]
-)
+_BENT = panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n, error=FLAT_ERRORS["abs_kappa_n"])
 _CURVED = panel(
     MINUS_K,
     lambda row: -row.total_gauss_curvature,
@@ -50,7 +48,7 @@ def _over_disk(row: Row) -> float:
     return row.energy / (row.sigma_hat / (4 * pi) + 4 * pi**2)
 
 
-_OVER_DISK = panel(r"$E\,/\,E_\mathrm{flat\ disk}$", _over_disk)
+_OVER_DISK = panel(r"$E\,/\,(\hat\sigma/4\pi+4\pi^2)$", _over_disk)
 _SWEEP = (
     _BENT,
     _CURVED,
@@ -126,7 +124,7 @@ def signed_twists(branch: Branch) -> list[FloatArray]:
 
 
 def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
-    """Return films as vectors, turned to lie alike, seen from one side."""
+    """Return films as vectors, turned to lie alike, seen from one side, with a scale."""
     films = [aligned([read_shape(path) for path in own]) for own in paths]
     every = [shape for shapes in films for shape in shapes]
     eye = common_view(every).eye
@@ -135,7 +133,9 @@ def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
         [partial(draw_film, shape=shape, eye=eye, half=half) for shape in shapes]
         for shapes in films
     ]
-    return Portraits(draw, half)
+    seen = degrees(asin(min(1.0, eye[2])))
+    note = f"all seen from {seen:.0f}° above the plane in which flat films lie; bar: L/10"
+    return Portraits(draw, half, note=note, bar=0.1)
 
 
 _FIELDS = {

@@ -5,27 +5,18 @@ Every diagram of a run is a list of panels and a list of curves handed to `draw_
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.pictures.figure import (
-    BLACK,
-    BLUE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    frame,
-)
+from eulerplateau.pictures.figure import frame
+from eulerplateau.pictures.looks import Look
 from eulerplateau.runs import Quantity, Series, without_noise
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
     from matplotlib.lines import Line2D
@@ -33,11 +24,6 @@ if TYPE_CHECKING:
 
 Band = tuple[float, float]
 
-DASHES = (0, (4, 2))
-_COLOURS = (BLUE, VERMILION, BLACK, GREEN, PURPLE, ORANGE, SKY)
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-# Letters of a legend per inch, and what the line or marker before a label takes.
-_LETTERS, _KEY = 13.0, 9
 # Part of a panel's whole range below which the solid curves' own is rounding.
 _FLAT = 1e-3
 
@@ -70,7 +56,7 @@ class Panel:
     limits: Band | None = None
 
     def curves(self, series: Series) -> Sequence[FloatArray]:
-        """Return the curves (n,) of a series as they are drawn, free of rounding's noise."""
+        """Return the curves (n,) of a series as they are drawn, without noise."""
         values = self.values(series)
         if self.error is None:
             return values
@@ -82,36 +68,7 @@ def panel(label: str, quantity: Quantity, **options: Any) -> Panel:
     return Panel(label, lambda series: [series.values(quantity)], **options)
 
 
-@dataclass(frozen=True)
-class Look:
-    """How a curve is drawn, in matplotlib's words.
-
-    Attributes
-    ----------
-    solid, dashed : of its pieces, as they are solid or not
-    bad : of its rows that are not converged
-    label : str or None, in the legend; curves that share it are named once
-    """
-
-    solid: Mapping[str, Any]
-    dashed: Mapping[str, Any]
-    bad: Mapping[str, Any] = field(default_factory=dict)
-    label: str | None = None
-
-
 Curve = tuple[Series, Look]
-
-
-def style(number: int) -> dict[str, Any]:
-    """Return how the run of that number is drawn: told apart without colour by marker."""
-    colour = _COLOURS[number % len(_COLOURS)]
-    return {
-        "color": colour,
-        "marker": _MARKERS[number % len(_MARKERS)],
-        "markersize": 4.0,
-        "markerfacecolor": "white" if number % 2 else colour,
-        "markeredgewidth": 0.9,
-    }
 
 
 def draw_panels(
@@ -161,28 +118,19 @@ def draw_panels(
         for ax in line if what.solid_only else fitted:
             _fit_height(ax, margin, what.solid_only)
         if what.ticks is not None:
-            line[0].set_yticks(what.ticks)
+            _hold(line[0], what.ticks, margin)
         if what.limits is not None:
             line[0].set_ylim(*what.limits)
     return axes
 
 
-def legend_above(
-    figure: FigureBase,
-    handles: Sequence[Artist],
-    columns: int | None = None,
-    size: float = 8.0,
-) -> None:
-    """Explain labelled `handles` above the panels, in as many columns as have room."""
-    longest = max((len(str(handle.get_label())) for handle in handles), default=0)
-    room = _LETTERS * figure.get_figure(root=True).get_figwidth()
-    figure.legend(
-        handles=handles,
-        loc="outside upper center",
-        ncols=columns or max(1, int(room / (longest + _KEY))),
-        frameon=False,
-        fontsize=size,
-    )
+def _hold(ax: Axes, ticks: Sequence[float], margin: float) -> None:
+    """Put ticks where they are said to be, and leave room beyond them."""
+    low, high = min(ticks), max(ticks)
+    room = margin * (high - low)
+    below, above = ax.get_ylim()
+    ax.set_yticks(ticks)
+    ax.set_ylim(min(below, low - room), max(above, high + room))
 
 
 def _shade(ax: Axes, bands: Sequence[Band], meaning: str) -> None:

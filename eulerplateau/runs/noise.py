@@ -1,4 +1,4 @@
-"""How far rounding and a residual can bend a flat film: below that nothing is seen of it."""
+"""How far rounding and a residual can bend a flat film: less is drawn as nothing."""
 
 from __future__ import annotations
 
@@ -31,9 +31,10 @@ def bend_error(row: Row) -> float:
     negative and another may be nearer to zero: then the error is understated.
     """
     stiffness = row.lowest_eigenvalue
-    stiffness = SOFTEST_BENDING if stiffness is None else abs(stiffness)
+    lowest = row.lowest_eigenvalue
+    stiffness = SOFTEST_BENDING if lowest is None else abs(lowest)
     sigma, mean_square = abs(row.sigma_hat), abs(row.bending_energy)
-    force = row.residual * (sigma + 2.0 * mean_square**1.5)
+    force = float(row.residual * (sigma + 2.0 * mean_square**1.5))
     if force == 0.0:
         return 0.0
     if stiffness == 0.0:

@@ -51,7 +51,7 @@ def row_of(disk: Disk, flat: Equilibrium, height: float, wave: int) -> Row:
 def test_a_film_out_of_balance_is_flat_within_its_error(
     disk: Disk, flat: Equilibrium, height: float, wave: int
 ) -> None:
-    """Lifted by a wave it bends by (2 pi wave)^2 height, about, and its residual says so."""
+    """Lifted by a wave it bends by some (2 pi wave)^2 height; its residual says so."""
     row = row_of(disk, flat, height, wave)
     assert row.abs_kappa_n > 0.3 * (2 * np.pi * wave) ** 2 * height
     for name, error in FLAT_ERRORS.items():

@@ -17,6 +17,7 @@ from eulerplateau.pictures.figure import (
     drawn,
     enlarged,
     figure_of_panels,
+    load_matplotlib,
     save,
 )
 from eulerplateau.pictures.looks import (
@@ -81,6 +82,7 @@ def plot_branches(run: Run, path: Path) -> None:
     point to another, if it is short. Raises OutputError if the file cannot be written, or
     a special point is not in special_points.csv.
     """
+    load_matplotlib()
     kinds = _kinds(run)
     colours = _colours(run.branches)
     panels = pictures_of(run.kind).branches(run.branches)

@@ -7,7 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eulerplateau.errors import SpecError
-from eulerplateau.pictures.figure import PAGE, drawn, enlarged, new_figure, save
+from eulerplateau.pictures.figure import (
+    PAGE,
+    drawn,
+    enlarged,
+    load_matplotlib,
+    new_figure,
+    save,
+)
 from eulerplateau.pictures.film_pictures import FILM
 from eulerplateau.pictures.looks import (
     CROSS,
@@ -72,6 +79,7 @@ def runs_figure(
     figure.
     """
     check_plot(runs, what)
+    load_matplotlib()
     if what == "onset":
         return onset_figure(runs)
     kind = pictures_of(runs[0].kind)

@@ -42,7 +42,9 @@ _UNDATED: dict[str, dict[str, None]] = {
 }
 _DPI = 300
 # Inches: one column of a journal, two, and what a panel takes of the height.
-COLUMN, PAGE, _PANEL, _ABOVE = 8.6 / 2.54, 17.8 / 2.54, 1.5, 1.2
+COLUMN, PAGE, _PANEL, _ABOVE = 8.6 / 2.54, 17.8 / 2.54, 1.35, 1.2
+# Inches above and below each part of a figure.
+_ROOM = 0.06
 # How far a bar is below its field, as a part of that.
 _BELOW = 0.04
 # Points, at the size at which figures are printed: of labels, and of ticks and legends.
@@ -112,8 +114,9 @@ def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure of so many inches that leaves its parts the room they need."""
     load_matplotlib()
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    return Figure(figsize=(width, height), layout="constrained")
+    return Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(h_pad=_ROOM))
 
 
 def figure_of_panels(columns: int, count: int) -> Figure:

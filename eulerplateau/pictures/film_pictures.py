@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from math import asin, degrees, pi
+from math import pi
 from pathlib import Path
 from typing import Any, cast
 
@@ -124,7 +124,7 @@ def signed_twists(branch: Branch) -> list[FloatArray]:
 
 
 def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
-    """Return films as vectors, turned to lie alike, seen from one side, with a scale."""
+    """Return films as vectors, turned to lie alike, seen from one side."""
     films = [aligned([read_shape(path) for path in own]) for own in paths]
     every = [shape for shapes in films for shape in shapes]
     eye = common_view(every).eye
@@ -133,9 +133,7 @@ def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
         [partial(draw_film, shape=shape, eye=eye, half=half) for shape in shapes]
         for shapes in films
     ]
-    seen = degrees(asin(min(1.0, eye[2])))
-    note = f"all seen from {seen:.0f}° above the plane in which flat films lie; bar: L/10"
-    return Portraits(draw, half, note=note, bar=0.1)
+    return Portraits(draw, half)
 
 
 _FIELDS = {

@@ -95,6 +95,8 @@ def legend_above(
     """
     from matplotlib.legend_handler import HandlerTuple
 
+    if not handles:
+        return
     labels = label_of(handles)
     figure.legend(
         handles=handles,

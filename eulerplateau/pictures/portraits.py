@@ -24,7 +24,7 @@ _PER_LINE, _MOST = 6, 12
 # A curve steeper than this, in shares of its panel, has its numbers beside it.
 _STEEP = 1.5
 # Inches.
-_TITLE, _NOTE = 0.22, 0.17
+_TITLE, _NOTE = 0.25, 0.28
 
 
 # A shape that is drawn: the number of its run, its row, and what draws it.

@@ -42,6 +42,7 @@ from eulerplateau.runs import (
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 # Black is the first branch; the branches of one origin share a colour, the others take
 # them in turn. Each branch has a marker of its own that no special point has.
@@ -71,7 +72,16 @@ def draw_branches(folder: Path) -> bool:
 
 
 def plot_branches(run: Run, path: Path) -> None:
-    """Draw the branches of a run to the PNG file `path`; solid where stable, else dashed.
+    """Draw the branches of a run to the PNG file `path`.
+
+    Raises OutputError if the file cannot be written, or a special point is not in
+    special_points.csv.
+    """
+    save(branches_figure(run), path)
+
+
+def branches_figure(run: Run) -> Figure:
+    """Return the figure of the branches of a run; solid where stable, else dashed.
 
     Over the load, of films: the loop's total normal curvature, the order parameter of the
     paper, in which mirror images coincide; the twist of the film's normal across the waist,
@@ -79,8 +89,8 @@ def plot_branches(run: Run, path: Path) -> None:
     sides. Of both the energy above that of the first branch, which tells the state of least
     energy. Markers tell folds from bifurcations, and lines at the top give their
     loads. A second column enlarges the first stable branch that runs from one special
-    point to another, if it is short. Raises OutputError if the file cannot be written, or
-    a special point is not in special_points.csv.
+    point to another, if it is short. Raises OutputError if a special point is not in
+    special_points.csv.
     """
     load_matplotlib()
     kinds = _kinds(run)
@@ -102,7 +112,7 @@ def plot_branches(run: Run, path: Path) -> None:
         _name_loads(column, loads.values())
     figure.align_ylabels()
     legend_above(figure, handles)
-    save(figure, path)
+    return figure
 
 
 def _curve(branch: Branch, colour: str) -> Curve:

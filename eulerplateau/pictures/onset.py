@@ -17,6 +17,7 @@ from eulerplateau.pictures.figure import (
     PAGE,
     SMALL,
     frame,
+    load_matplotlib,
     new_figure,
 )
 from eulerplateau.pictures.looks import legend_above, style
@@ -80,6 +81,9 @@ def fit_onset(run: Run) -> tuple[Onset, Onset]:
 def onset_figure(runs: Sequence[Run]) -> Figure:
     """Return the figure: each quantity over the load's distance, linear and log-log."""
     fits = [fit_onset(run) for run in runs]
+    load_matplotlib()
+    from matplotlib.lines import Line2D
+
     figure = new_figure(PAGE, 5.6 + 0.2 * len(runs))
     axes = figure.subplots(2, 2)
     for (label, quantity), column, onsets in zip(
@@ -94,7 +98,8 @@ def onset_figure(runs: Sequence[Run]) -> Figure:
         column[0].set_xlabel(r"$\varepsilon$ (%)")
         column[1].set_xlabel(r"$\varepsilon=\,$load$\,/\,$onset$\,-\,1$")
         column[1].legend(loc="upper left", frameon=False, fontsize=SMALL)
-    legend_above(figure, axes[0, 0].get_legend_handles_labels()[0])
+    law = Line2D([], [], color="0.3", linewidth=0.9, label="fitted law")
+    legend_above(figure, [*axes[0, 0].get_legend_handles_labels()[0], law])
     return figure
 
 

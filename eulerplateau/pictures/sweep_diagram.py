@@ -54,6 +54,14 @@ def draw_diagram(folder: Path) -> bool:
 def plot_diagram(run: Run, path: Path) -> None:
     """Draw the bifurcation diagram of a sweep to the PNG file `path`.
 
+    Raises OutputError if the file cannot be written.
+    """
+    save(diagram_figure(run), path)
+
+
+def diagram_figure(run: Run) -> Figure:
+    """Return the bifurcation diagram of a sweep.
+
     Of a film over the load: the loop's total normal curvature, the order parameter of the
     paper (its fig. twisting); minus the film's total Gauss curvature; the twist of its
     normal across the waist; its aspect; its energy over that of the flat disk. Grey bands:
@@ -62,8 +70,7 @@ def plot_diagram(run: Run, path: Path) -> None:
 
     Of a cell over its contractility or stiffness: perimeter; the least curvature half-way
     along its sides, below zero where they are inflected (grey bands); the mean traction;
-    its area; its energy. Above stand the outlines of its states. Raises OutputError if the
-    file cannot be written.
+    its area; its energy. Above stand the outlines of its states.
     """
     kind = pictures_of(run.kind)
     window = None
@@ -96,7 +103,7 @@ def plot_diagram(run: Run, path: Path) -> None:
     (part or figure).align_ylabels()
     handles = axes[0, 0].get_legend_handles_labels()[0]
     legend_above(part or figure, handles)
-    save(figure, path)
+    return figure
 
 
 def _figure_below(

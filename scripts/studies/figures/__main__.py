@@ -199,7 +199,8 @@ def shrink(path: Path) -> None:
 
     with Image.open(path) as image:
         small = image.convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    small.save(path, optimize=True)
+        dots = image.info["dpi"]
+    small.save(path, optimize=True, dpi=dots)
 
 
 def page(labels: dict[str, str], found: dict[str, list[Number]]) -> str:

@@ -45,6 +45,8 @@ _TO_EYE = np.array(
 )
 # A field's height over its width, and a bar in units of L.
 _HEIGHT, _BAR = 0.6, 0.1
+# How far along the way to the eye (in L) a loop is drawn in front of its film.
+_NEARER = 0.025
 _DASHDOT = (0, (6, 1.5, 1, 1.5))
 _HELD: dict[str, dict[str, Any]] = {
     "twisted": {"color": VERMILION, "linewidth": 1.4},
@@ -141,7 +143,7 @@ def draw_waist(path: Path, rows: Any, onset: float, held: Any) -> None:
         _draw_held(right, land)
     right.plot(0, 0, "s", color=BLACK, ms=4)
     right.set(
-        xlabel=r"waist $w/L$, held", ylabel=r"$(E-E_8)\,/\,(\alpha/L)$", xlim=(-0.008, 0.36)
+        xlabel=r"waist $w/L$, held", ylabel=r"$(E-E_8)\,/\,(\alpha/L)$", xlim=(-0.008, 0.41)
     )
     right.set(ylim=(-15, 11))
     for ax in (left, right):
@@ -201,13 +203,20 @@ def draw_films(path: Path, films: Mapping[str, ConformalFilm], lines: int) -> No
     width = PAGE / columns
     figure = new_figure(PAGE, lines * (_HEIGHT * width + 0.3) + 0.3)
     axes = figure.subplots(lines, columns, squeeze=False)
-    for ax, title, shape in zip(axes.flat, films, shapes, strict=True):
-        draw_film(ax, shape.moved(shape.x - shape.x.mean(axis=0)), _TO_EYE, size)
+    for ax, title, shape, x in zip(axes.flat, films, shapes, seen, strict=True):
+        draw_film(ax, _loop_in_front(shape.moved(x)), _TO_EYE, size)
         ax.set_title(title, fontsize=TEXT)
     scale_bar(axes[0, 0], _BAR)
     note = f"seen from {_ELEVATION:.0f}° above the plane of flat films; bar: {_BAR:g} L"
     figure.supxlabel(note, fontsize=SMALL, color="0.3")
     save(figure, path)
+
+
+def _loop_in_front(shape: Shape) -> Shape:
+    """Return a shape whose loop is a little nearer to the eye than the film it bounds."""
+    count, nearer = len(shape.x), shape.x_loop + _NEARER * _TO_EYE
+    loop = np.arange(count, count + len(nearer))
+    return Shape(np.concatenate([shape.x, nearer]), shape.triangles, loop)
 
 
 def triangulated(film: ConformalFilm) -> Shape:

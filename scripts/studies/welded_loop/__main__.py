@@ -68,7 +68,8 @@ KEPT_FLAT = (1900.0, 2000.0, 2100.0)
 def main(out: Path, table: Path | None) -> None:
     """Print the tables as Markdown; write welded_loop.csv, .json and the pictures."""
     if table is not None:
-        _draw(out / "pictures" / "welded-loop", _read(table))
+        with threadpool_limits(1):
+            _draw(out / "pictures" / "welded-loop", _read(table))
         return
     out.mkdir(parents=True, exist_ok=True)
     with processes() as pool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
@@ -49,9 +49,11 @@ def sweep(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
 
 
 @pytest.fixture(scope="module")
-def many(sweep: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Run]:
-    """Twenty runs like the first."""
+def many(mesh: Disk, tmp_path_factory: pytest.TempPathFactory) -> list[Run]:
+    """Twenty runs of a few loads."""
     folder = tmp_path_factory.mktemp("many")
+    rows = [row_at(step, load) for step, load in enumerate((1.0, 300.0, 690.0, 720.0))]
+    sweep = record(folder / "first", mesh, rows)
     return read_runs([Path(copytree(sweep, folder / f"seed={n}")) for n in range(20)])
 
 
@@ -74,18 +76,19 @@ def branched(count: int) -> Run:
     return Run(Path("run"), tuple(rows), explored=True, special=special)
 
 
-def small_runs(sweep: Path) -> dict[str, Figure]:
+def branches(run: Run) -> Figure:
     special = {number: {"kind": kind} for number, kind in KINDS.items()}
-    (run,) = read_runs([sweep])
-    return {
-        "diagram": diagram_figure(run),
-        "plot": runs_figure([run], "diagram"),
-        "energy": runs_figure([run], "energy"),
-        "onset": runs_figure([run], "onset"),
-        "branches": branches_figure(
-            Run(Path("run"), tuple(diagram()), explored=True, special=special)
-        ),
-    }
+    rows = tuple(diagram())
+    return branches_figure(replace(run, rows=rows, explored=True, special=special))
+
+
+SMALL_FIGURES: dict[str, Callable[[Run], Figure]] = {
+    "diagram": diagram_figure,
+    "plot": lambda run: runs_figure([run], "diagram"),
+    "energy": lambda run: runs_figure([run], "energy"),
+    "onset": lambda run: runs_figure([run], "onset"),
+    "branches": branches,
+}
 
 
 def written(figure: Figure) -> list[Text]:
@@ -219,15 +222,17 @@ def overlapping(texts: Sequence[Text]) -> list[tuple[str, str]]:
     return found
 
 
-def test_figures_of_small_runs_can_be_read(sweep: Path) -> None:
+@pytest.mark.parametrize("name", SMALL_FIGURES)
+def test_figures_of_small_runs_can_be_read(sweep: Path, name: str) -> None:
     """Not one text lies on another, all are as large as journals ask, none is too wide."""
-    for name, figure in small_runs(sweep).items():
-        texts = written(figure)
-        assert len(texts) > 10, name
-        assert overlapping(texts) == [], name
-        assert min(text.get_fontsize() for text in texts) >= LEAST, name
-        assert figure.get_figwidth() <= PAGE + 1e-9, name
-        assert figure.get_figheight() <= PAGE_HEIGHT, name
+    (run,) = read_runs([sweep])
+    figure = SMALL_FIGURES[name](run)
+    texts = written(figure)
+    assert len(texts) > 10
+    assert overlapping(texts) == []
+    assert min(text.get_fontsize() for text in texts) >= LEAST
+    assert figure.get_figwidth() <= PAGE + 1e-9
+    assert figure.get_figheight() <= PAGE_HEIGHT
 
 
 def test_twenty_runs_fit_on_a_page_and_their_diagram_is_no_strip(many: list[Run]) -> None:

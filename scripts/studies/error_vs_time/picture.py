@@ -101,9 +101,10 @@ def _cut(ax: Axes, low: float, others: list[Point]) -> None:
     least = min(error_of(p) for p in others)
     first = min(p.cpu for p in others if error_of(p) == least)
     ax.text(
-        0.03,
+        0.97,
         0.04,
         f"{others[0].first.solver}: to {least:.0e} in {first:.1g} s",
+        ha="right",
         transform=ax.transAxes,
         fontsize=SMALL,
     )

@@ -46,7 +46,7 @@ _TO_EYE = np.array(
 # A field's height over its width, and a bar in units of L.
 _HEIGHT, _BAR = 0.6, 0.1
 # How far along the way to the eye (in L) a loop is drawn in front of its film.
-_NEARER = 0.025
+_NEARER = 0.04
 _DASHDOT = (0, (6, 1.5, 1, 1.5))
 _HELD: dict[str, dict[str, Any]] = {
     "twisted": {"color": VERMILION, "linewidth": 1.4},

@@ -17,6 +17,8 @@ from eulerplateau.pictures.figure import (
     new_figure,
     save,
     scale_bar,
+    wrapped,
+    write_below,
 )
 from eulerplateau.pictures.film_pictures import FILM
 from eulerplateau.pictures.looks import legend_above
@@ -62,7 +64,8 @@ def plot_catalogue(catalogue: Catalogue, path: Path) -> None:
     columns = max(map(len, lines))
     width = max(COLUMN, _WIDTH * columns)
     field = width / columns * portraits.half[1] / portraits.half[0] + _TITLE
-    above = len(lines) * field + _NOTE
+    note = "; ".join(filter(None, (portraits.note, r"$E$ in $\alpha/L$")))
+    above = len(lines) * field + _NOTE * len(wrapped(note, width).splitlines())
     figure = new_figure(width, above + _COUNTS)
     top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=(above, _COUNTS))[
         :, 0
@@ -76,8 +79,7 @@ def plot_catalogue(catalogue: Catalogue, path: Path) -> None:
             ax.set_title(_words(row), fontsize=SMALL, pad=3)
     if portraits.bar:
         scale_bar(axes[0, 0], portraits.bar)
-    note = "; ".join(filter(None, (portraits.note, r"$E$ in $\alpha/L$")))
-    top.supxlabel(note, fontsize=SMALL, color="0.3")
+    write_below(top, note)
     counts = bottom.subplots(1, len(loads), squeeze=False, sharey=True)[0]
     for load, ax in zip(loads, counts, strict=True):
         _draw_counts(ax, catalogue, load)

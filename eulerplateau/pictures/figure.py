@@ -7,6 +7,7 @@ import logging
 import math
 import os
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from eulerplateau.mesh import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, FigureBase
 
 # What draws a shape into a field.
 DrawShape = Callable[["Axes"], None]
@@ -49,6 +50,8 @@ _ROOM = 0.06
 _BELOW = 0.04
 # Points, at the size at which figures are printed: of labels, and of ticks and legends.
 TEXT, SMALL = 8.0, 7.0
+# Small letters of a line of text per inch.
+_LETTERS = 14.0
 # A range of loads narrower than this part of all loads gets a column of its own.
 _NARROW = 0.2
 
@@ -135,6 +138,18 @@ def frame(ax: Axes) -> None:
         text.set_fontsize(TEXT)
     for axis in (ax.xaxis, ax.yaxis):
         axis.get_offset_text().set_fontsize(SMALL)
+
+
+def wrapped(note: str, width: float) -> str:
+    """Return a note in lines that have room in so many inches, in small letters."""
+    letters = int(_LETTERS * width)
+    return "\n".join(textwrap.fill(line, letters) for line in note.splitlines())
+
+
+def write_below(figure: FigureBase, note: str) -> None:
+    """Write a note below a figure, in lines that have room there."""
+    width = figure.get_figure(root=True).get_figwidth()
+    figure.supxlabel(wrapped(note, width), fontsize=SMALL, color="0.3")
 
 
 def scale_bar(ax: Axes, length: float) -> None:

@@ -27,6 +27,7 @@ from eulerplateau.pictures.figure import (
     new_figure,
     save,
     scale_bar,
+    write_below,
 )
 
 if TYPE_CHECKING:
@@ -82,7 +83,7 @@ def plot_gallery(path: Path) -> None:
     for ax, name in zip(axes[0], _COLUMNS, strict=True):
         _write(ax, (0.5, 1.2), name, TEXT)
     scale_bar(axes[0, 0], _BAR)
-    figure.supxlabel(f"all at one scale; bar: {_BAR:g} L", fontsize=SMALL, color="0.3")
+    write_below(figure, f"all at one scale; bar: {_BAR:g} L")
     save(figure, path)
 
 

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eulerplateau.pictures.figure import SMALL, DrawShape, Portraits, scale_bar
+from eulerplateau.pictures.figure import (
+    SMALL,
+    DrawShape,
+    Portraits,
+    scale_bar,
+    wrapped,
+    write_below,
+)
 from eulerplateau.pictures.kinds import KindPictures
 from eulerplateau.pictures.looks import style
 from eulerplateau.pictures.panels import Band
@@ -62,7 +69,7 @@ class PortraitLines:
         """Return the height (inches) in which shapes of this width have room."""
         half, title = self.portraits.half, self.portraits.lines * _TITLE
         shape = min(width / self.columns, self.portraits.widest) * half[1] / half[0]
-        notes = _NOTE * len(self.notes.splitlines())
+        notes = _NOTE * len(wrapped(self.notes, width).splitlines())
         return len(self.lines) * (shape + title) + notes
 
     def draw(self, figure: FigureBase) -> None:
@@ -83,7 +90,7 @@ class PortraitLines:
                 title = rf"$\bf{{{count}}}$   {words}"
                 ax.set_title(title, fontsize=SMALL, color=style(number)["color"], pad=3)
         if self.notes:
-            figure.supxlabel(self.notes, fontsize=SMALL, color="0.3")
+            write_below(figure, self.notes)
 
 
 def at_most(

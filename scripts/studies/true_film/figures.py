@@ -24,6 +24,7 @@ from eulerplateau.pictures.figure import (
     new_figure,
     save,
     scale_bar,
+    write_below,
 )
 from eulerplateau.pictures.vector_film import draw_film
 
@@ -208,7 +209,7 @@ def draw_films(path: Path, films: Mapping[str, ConformalFilm], lines: int) -> No
         ax.set_title(title, fontsize=TEXT)
     scale_bar(axes[0, 0], _BAR)
     note = f"seen from {_ELEVATION:.0f}° above the plane of flat films; bar: {_BAR:g} L"
-    figure.supxlabel(note, fontsize=SMALL, color="0.3")
+    write_below(figure, note)
     save(figure, path)
 
 

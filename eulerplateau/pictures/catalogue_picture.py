@@ -64,7 +64,11 @@ def plot_catalogue(catalogue: Catalogue, path: Path) -> None:
     columns = max(map(len, lines))
     width = max(COLUMN, _WIDTH * columns)
     field = width / columns * portraits.half[1] / portraits.half[0] + _TITLE
-    note = "; ".join(filter(None, (portraits.note, r"$E$ in $\alpha/L$")))
+    note = "; ".join(
+        filter(
+            None, (portraits.note, "$E$\N{NO-BREAK SPACE}in\N{NO-BREAK SPACE}$\\alpha/L$")
+        )
+    )
     above = len(lines) * field + _NOTE * len(wrapped(note, width).splitlines())
     figure = new_figure(width, above + _COUNTS)
     top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=(above, _COUNTS))[

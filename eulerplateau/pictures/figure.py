@@ -51,7 +51,7 @@ _BELOW = 0.04
 # Points, at the size at which figures are printed: of labels, and of ticks and legends.
 TEXT, SMALL = 8.0, 7.0
 # Small letters of a line of text per inch.
-_LETTERS = 14.0
+_LETTERS = 16.0
 # A range of loads narrower than this part of all loads gets a column of its own.
 _NARROW = 0.2
 

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 _COLUMNS = 5
 # Inches: a shape, what is written above it and below all, and the curves.
 _WIDTH, _TITLE, _NOTE, _COUNTS = 1.4, 0.5, 0.25, 2.3
+# In one piece, however a note is broken.
+_UNIT = "$E$\N{NO-BREAK SPACE}in\N{NO-BREAK SPACE}" r"$\alpha/L$"
 _CURVES = {
     "together": ("both", "0.3"),
     "by_starts": ("random starts", BLUE),
@@ -64,11 +66,7 @@ def plot_catalogue(catalogue: Catalogue, path: Path) -> None:
     columns = max(map(len, lines))
     width = max(COLUMN, _WIDTH * columns)
     field = width / columns * portraits.half[1] / portraits.half[0] + _TITLE
-    note = "; ".join(
-        filter(
-            None, (portraits.note, "$E$\N{NO-BREAK SPACE}in\N{NO-BREAK SPACE}$\\alpha/L$")
-        )
-    )
+    note = "; ".join(filter(None, (portraits.note, _UNIT)))
     above = len(lines) * field + _NOTE * len(wrapped(note, width).splitlines())
     figure = new_figure(width, above + _COUNTS)
     top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=(above, _COUNTS))[

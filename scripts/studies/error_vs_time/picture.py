@@ -22,6 +22,7 @@ from eulerplateau.pictures.figure import (
     save,
 )
 from eulerplateau.pictures.looks import legend_above
+from scripts.studies.common import shrink
 from scripts.studies.error_vs_time.records import HARMONICS, Measurement, Point, points
 from scripts.studies.error_vs_time.report import by_scene, error_of, on_front
 
@@ -67,6 +68,7 @@ def draw(path: Path, found: list[Measurement]) -> None:
     solvers = {p.first.solver for group in scenes.values() for p in group}
     legend_above(figure, _handles([name for name in MARKERS if name in solvers]))
     save(figure, path)
+    shrink(path)
 
 
 def _draw_scene(ax: Axes, group: list[Point]) -> None:

@@ -8,7 +8,8 @@
     portraits.py     shapes above a diagram: films by vector_film.py, cells by outlines.py
     planar.py        figures of the exact planar films
     area_fit.py      cell areas over stiffness, with what was fitted to them
-    figure.py        labels, colours, saving: what all figures have in common
+    figure.py        labels, colours, sizes, saving: what all figures have in common
+    looks.py         how curves are told apart, and legends
     view.py, alignment.py   from where films are seen, and turned to lie alike
     render/          stills and animations by VTK, in a child process (child.py)
     gallery/         a run as one page to browse

@@ -9,7 +9,16 @@ from pathlib import Path
 import numpy as np
 
 from eulerplateau.exact.cell import AreaFit
-from eulerplateau.pictures.figure import BLACK, BLUE, drawn, frame, new_figure, save
+from eulerplateau.pictures.figure import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    SMALL,
+    drawn,
+    frame,
+    new_figure,
+    save,
+)
 
 _STIFFNESS = r"substrate stiffness $k_s$ (as given)"
 _AREA = r"projected area $\pi R^2$ (as given)"
@@ -48,7 +57,7 @@ def plot_area_fit(
     curve, standard_error = fit.areas(k)
     half = fit.quantile() * standard_error
 
-    figure = new_figure(5.4, 4.0)
+    figure = new_figure(COLUMN, 2.7)
     ax = figure.subplots()
     band = f"{100 * fit.level:g} % band"
     low = np.maximum(curve - half, 0.0)
@@ -71,10 +80,11 @@ def plot_area_fit(
                 xytext=(4, 0),
                 textcoords="offset points",
                 va="center",
+                fontsize=SMALL,
                 color="0.3",
             )
     ax.set(xscale="log", xlim=(k[0], k[-1]), xlabel=_STIFFNESS, ylabel=_AREA)
     frame(ax)
     ax.set_xlim(k[0], k[-1])
-    ax.legend(frameon=False, fontsize=9)
+    ax.legend(frameon=False, fontsize=SMALL)
     save(figure, path)

@@ -13,26 +13,26 @@ from eulerplateau.branches import BIFURCATION, FOLD
 from eulerplateau.errors import OutputError
 from eulerplateau.pictures.figure import (
     BLACK,
-    BLUE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
+    SMALL,
     drawn,
     enlarged,
     figure_of_panels,
+    load_matplotlib,
     save,
 )
-from eulerplateau.pictures.of_run import pictures_of
-from eulerplateau.pictures.panels import (
+from eulerplateau.pictures.looks import (
+    COLOURS,
+    CROSS,
     DASHES,
-    Curve,
+    MARKERS,
     Look,
-    Panel,
-    draw_panels,
+    label_of,
     legend_above,
+    legend_height,
+    tagged,
 )
+from eulerplateau.pictures.of_run import pictures_of
+from eulerplateau.pictures.panels import Curve, Panel, draw_panels
 from eulerplateau.runs import (
     Branch,
     Run,
@@ -42,9 +42,12 @@ from eulerplateau.runs import (
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
-# After black for the first branch, in turn; one colour for the branches of one origin.
-_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
+# Black is the first branch; the branches of one origin share a colour, the others take
+# them in turn. Each branch has a marker of its own that no special point has.
+_COLOURS = tuple(colour for colour in COLOURS if colour != BLACK)
+_TAGS = tuple(marker for marker in MARKERS if marker not in "oDd")
 _STABLE: dict[str, Any] = {"linestyle": "-", "linewidth": 1.6, "zorder": 3}
 _UNSTABLE: dict[str, Any] = {"linestyle": DASHES, "linewidth": 0.9, "zorder": 2}
 # Above all curves, and below the crosses of what did not converge.
@@ -53,7 +56,7 @@ _MARKERS: dict[str, dict[str, Any]] = {
     BIFURCATION: {**_POINT, "marker": "o", "markersize": 4.5, "markerfacecolor": "white"},
     FOLD: {**_POINT, "marker": "D", "markersize": 4.0},
 }
-_NOT_CONVERGED: dict[str, Any] = {**_POINT, "marker": "x", "markersize": 5.0, "zorder": 4}
+_NOT_CONVERGED: dict[str, Any] = {**CROSS, "color": BLACK, "zorder": 4}
 _LEADER: dict[str, Any] = {
     "arrowstyle": "-", "linewidth": 0.5, "relpos": (0.5, 0.0), "shrinkA": 0, "shrinkB": 0
 }  # fmt: skip
@@ -69,7 +72,16 @@ def draw_branches(folder: Path) -> bool:
 
 
 def plot_branches(run: Run, path: Path) -> None:
-    """Draw the branches of a run to the PNG file `path`; solid where stable, else dashed.
+    """Draw the branches of a run to the PNG file `path`.
+
+    Raises OutputError if the file cannot be written, or a special point is not in
+    special_points.csv.
+    """
+    save(branches_figure(run), path)
+
+
+def branches_figure(run: Run) -> Figure:
+    """Return the figure of the branches of a run; solid where stable, else dashed.
 
     Over the load, of films: the loop's total normal curvature, the order parameter of the
     paper, in which mirror images coincide; the twist of the film's normal across the waist,
@@ -77,17 +89,21 @@ def plot_branches(run: Run, path: Path) -> None:
     sides. Of both the energy above that of the first branch, which tells the state of least
     energy. Markers tell folds from bifurcations, and lines at the top give their
     loads. A second column enlarges the first stable branch that runs from one special
-    point to another, if it is short. Raises OutputError if the file cannot be written, or
-    a special point is not in special_points.csv.
+    point to another, if it is short. Raises OutputError if a special point is not in
+    special_points.csv.
     """
+    load_matplotlib()
     kinds = _kinds(run)
     colours = _colours(run.branches)
     panels = pictures_of(run.kind).branches(run.branches)
     window = _window(run.branches)
-    figure = figure_of_panels(1 if window is None else 2)
+    loads = _loads(run)
+    handles = _handles(run.branches, colours, sorted({kinds[number] for number in loads}))
+    figure = figure_of_panels(1 if window is None else 2, len(panels))
+    width, height = figure.get_size_inches()
+    figure.set_size_inches(width, height + legend_height(label_of(handles), width))
     curves = [_curve(branch, colours[branch.origin]) for branch in run.branches]
     axes = draw_panels(figure, panels, curves, run.load.label, window=window)
-    loads = _loads(run)
     for what, line in zip(panels, axes, strict=True):
         for ax in line:
             _mark(ax, what, run.branches, kinds)
@@ -95,14 +111,22 @@ def plot_branches(run: Run, path: Path) -> None:
     for column in axes.T:
         _name_loads(column, loads.values())
     figure.align_ylabels()
-    handles = _handles(run.branches, colours, sorted({kinds[number] for number in loads}))
-    legend_above(figure, handles, columns=2 if window is None else 3)
-    save(figure, path)
+    legend_above(figure, handles)
+    return figure
 
 
 def _curve(branch: Branch, colour: str) -> Curve:
-    stable, unstable = ({"color": colour, **style} for style in (_STABLE, _UNSTABLE))
-    return branch, Look(stable, unstable, _NOT_CONVERGED)
+    looks = _tag(branch, colour)
+    return branch, Look({**looks, **_STABLE}, {**looks, **_UNSTABLE}, _NOT_CONVERGED)
+
+
+def _tag(branch: Branch, colour: str) -> dict[str, Any]:
+    """Return colour and marker of a branch; the first has no marker."""
+    if branch.origin is None:
+        return {"color": colour}
+    filled = "white" if branch.number % 2 else colour
+    looks = tagged(branch.number, _TAGS)
+    return {**looks, "color": colour, "markerfacecolor": filled}
 
 
 def _loads(run: Run) -> dict[int, float]:
@@ -125,7 +149,7 @@ def _mark(
 ) -> None:
     """Mark the special points on the curves of a panel."""
     for branch in branches:
-        for values in what.values(branch):
+        for values in what.curves(branch):
             for row, value in zip(branch.rows, values, strict=True):
                 if row.special is not None:
                     ax.plot(row.load, value, **_MARKERS[kinds[row.special]])
@@ -171,7 +195,7 @@ def _name_loads(column: Sequence[Axes], special: Iterable[float]) -> None:
             rotation=90,
             ha="center",
             va="bottom",
-            fontsize=7,
+            fontsize=SMALL,
             arrowprops=_LEADER,
         )
 
@@ -197,11 +221,13 @@ def _spread(middles: Sequence[float], low: float, high: float) -> list[float]:
 
 def _handles(
     branches: Sequence[Branch], colours: Mapping[int | None, str], kinds: Sequence[str]
-) -> list[Artist]:
-    """Return what explains styles and markers, and says which branch is which colour."""
+) -> list[Artist | tuple[Artist, ...]]:
+    """Return what explains styles and markers, and says which branch is which."""
     from matplotlib.lines import Line2D
 
-    lines: list[Artist] = [Line2D([], [], color=BLACK, label="stable", **_STABLE)]
+    lines: list[Artist | tuple[Artist, ...]] = [
+        Line2D([], [], color=BLACK, label="stable", **_STABLE)
+    ]
     lines.append(Line2D([], [], color=BLACK, label="unstable", **_UNSTABLE))
     lines += [Line2D([], [], label=kind, **_MARKERS[kind]) for kind in kinds]
     if any(not row.converged for branch in branches for row in branch.rows):
@@ -214,5 +240,6 @@ def _handles(
         name = f"branch {numbers}" if len(members) == 1 else f"branches {numbers}"
         if origin is not None:
             name += f", from {members[0].rows[0].load:.6g}"
-        lines.append(Line2D([], [], color=colours[origin], linewidth=1.6, label=name))
+        looks = [{**_tag(branch, colours[origin]), **_STABLE} for branch in members]
+        lines.append(tuple(Line2D([], [], label=name, **look) for look in looks))
     return lines

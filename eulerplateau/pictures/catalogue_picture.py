@@ -6,8 +6,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eulerplateau.pictures.figure import BLUE, VERMILION, drawn, frame, new_figure, save
+from eulerplateau.pictures.figure import (
+    BLUE,
+    COLUMN,
+    SMALL,
+    TEXT,
+    VERMILION,
+    drawn,
+    frame,
+    new_figure,
+    save,
+    scale_bar,
+    wrapped,
+    write_below,
+)
 from eulerplateau.pictures.film_pictures import FILM
+from eulerplateau.pictures.looks import legend_above
 from eulerplateau.runs import CatalogueRow, read_catalogue, shape_name
 
 if TYPE_CHECKING:
@@ -15,9 +29,11 @@ if TYPE_CHECKING:
 
     from eulerplateau.runs import Catalogue
 
-_COLUMNS, _FEWEST = 6, 3
-# Inches.
-_WIDTH, _TITLE, _COUNTS = 1.55, 0.45, 2.4
+_COLUMNS = 5
+# Inches: a shape, what is written above it and below all, and the curves.
+_WIDTH, _TITLE, _NOTE, _COUNTS = 1.4, 0.5, 0.25, 2.3
+# In one piece, however a note is broken.
+_UNIT = "$E$\N{NO-BREAK SPACE}in\N{NO-BREAK SPACE}" r"$\alpha/L$"
 _CURVES = {
     "together": ("both", "0.3"),
     "by_starts": ("random starts", BLUE),
@@ -47,10 +63,12 @@ def plot_catalogue(catalogue: Catalogue, path: Path) -> None:
     ]
     paths = [[catalogue.folder / shape_name(row.step) for row in line] for line in lines]
     portraits = FILM.portraits(paths)
-    columns = max(_FEWEST, *map(len, lines))
-    field = _WIDTH * portraits.half[1] / portraits.half[0] + _TITLE
-    above = len(lines) * field
-    figure = new_figure(_WIDTH * columns, above + _COUNTS)
+    columns = max(map(len, lines))
+    width = max(COLUMN, _WIDTH * columns)
+    field = width / columns * portraits.half[1] / portraits.half[0] + _TITLE
+    note = "; ".join(filter(None, (portraits.note, _UNIT)))
+    above = len(lines) * field + _NOTE * len(wrapped(note, width).splitlines())
+    figure = new_figure(width, above + _COUNTS)
     top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=(above, _COUNTS))[
         :, 0
     ]
@@ -60,12 +78,15 @@ def plot_catalogue(catalogue: Catalogue, path: Path) -> None:
             ax.set_axis_off()
         for row, draw, ax in zip(line, draws, cells, strict=False):
             draw(ax)
-            ax.set_title(_words(row), fontsize=7, pad=2)
+            ax.set_title(_words(row), fontsize=SMALL, pad=3)
+    if portraits.bar:
+        scale_bar(axes[0, 0], portraits.bar)
+    write_below(top, note)
     counts = bottom.subplots(1, len(loads), squeeze=False, sharey=True)[0]
     for load, ax in zip(loads, counts, strict=True):
         _draw_counts(ax, catalogue, load)
-    counts[0].set_ylabel("distinct equilibria", fontsize=8)
-    counts[0].legend(frameon=False, fontsize=7, loc="lower right")
+    counts[0].set_ylabel("distinct equilibria", fontsize=TEXT)
+    legend_above(bottom, counts[0].get_legend_handles_labels()[0])
     save(figure, path)
 
 
@@ -76,7 +97,8 @@ def _lines(rows: Sequence[CatalogueRow]) -> list[Sequence[CatalogueRow]]:
 def _words(row: CatalogueRow) -> str:
     place = f"${row.load_name.tex}={row.load:.6g}$" if row.number == 0 else ""
     state = f"$E={row.energy:.5g}$, index {row.n_unstable}"
-    found = f"{row.by_starts} starts, {row.by_deflation} deflated"
+    starts = f"{row.by_starts} start{'s' if row.by_starts != 1 else ''}"
+    found = f"{starts}, {row.by_deflation} deflated"
     return f"{place}\n{state}\n{found}"
 
 
@@ -87,9 +109,8 @@ def _draw_counts(ax: Axes, catalogue: Catalogue, load: float) -> None:
     for name, (label, colour) in _CURVES.items():
         found = [count[name] for count in own]
         ax.step(searches, found, _STYLES[name], where="post", color=colour, label=label)
-    ax.set_xlabel("searches of each kind", fontsize=8)
-    ax.set_title(f"load {load:.6g}", fontsize=8)
-    ax.tick_params(labelsize=7)
-    ax.locator_params(axis="y", integer=True)
+    ax.set_xlabel("searches of each kind")
+    ax.set_title(f"${catalogue.rows[0].load_name.tex}={load:.6g}$")
+    ax.locator_params(integer=True)
     frame(ax)
     ax.set_ylim(0, 1 + max(count["together"] for count in catalogue.counts))

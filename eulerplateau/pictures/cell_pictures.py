@@ -71,7 +71,7 @@ def _is_inflected(row: Any) -> bool:
 
 
 CELL = KindPictures(
-    sweep=(PERIMETER, KAPPA_MID, TRACTION, AREA),
+    sweep=(PERIMETER, KAPPA_MID, TRACTION, AREA, ENERGY),
     portrayed=True,
     banded=_is_inflected,
     band="inflected",

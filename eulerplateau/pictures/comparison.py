@@ -7,19 +7,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eulerplateau.errors import SpecError
-from eulerplateau.pictures.figure import drawn, enlarged, new_figure, save
+from eulerplateau.pictures.figure import (
+    PAGE,
+    drawn,
+    enlarged,
+    load_matplotlib,
+    new_figure,
+    save,
+)
 from eulerplateau.pictures.film_pictures import FILM
+from eulerplateau.pictures.looks import (
+    CROSS,
+    DASHES,
+    Look,
+    label_of,
+    legend_above,
+    legend_height,
+    style,
+    tagged,
+)
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.onset import onset_figure
-from eulerplateau.pictures.panels import (
-    DASHES,
-    Curve,
-    Look,
-    draw_panels,
-    legend_above,
-    style,
-)
-from eulerplateau.pictures.portraits import number_shapes, portrait_lines
+from eulerplateau.pictures.panels import Curve, draw_panels
+from eulerplateau.pictures.portraits import at_most, number_shapes, portrait_lines
 from eulerplateau.runs import Run
 
 if TYPE_CHECKING:
@@ -28,10 +38,8 @@ if TYPE_CHECKING:
 
 WHAT = (*FILM.plots, "onset")
 
-# Markers are this part of a panel's diagonal apart, and those of the next run shifted.
-_APART, _SHIFT = 0.09, 0.035
-# Inches.
-_COLUMN, _EXTRA, _PANEL = 3.4, 0.6, 3.0
+# Inches: a figure with one column of panels and no shapes, a panel, and its labels.
+_WIDTH, _PANEL, _LABELS = 14.0 / 2.54, 2.7, 0.5
 
 
 def check_plot(runs: Sequence[Run], what: str) -> None:
@@ -66,21 +74,23 @@ def runs_figure(
     """Return the figure of one of WHAT.
 
     The diagram has shapes above it, at one scale, with the numbers of their places in it:
-    one shape for each distinct state, or those of `steps` (of every run). Raises SpecError
-    if such runs have no such figure.
+    one shape for each distinct state, or those of `steps` (of every run), or a few of them
+    where they are many, which is said there. Raises SpecError if such runs have no such
+    figure.
     """
     check_plot(runs, what)
+    load_matplotlib()
     if what == "onset":
         return onset_figure(runs)
     kind = pictures_of(runs[0].kind)
     panels = kind.plots[what]
     window = common_window(runs)
-    columns = 1 if window is None else 2
-    shown = [_shown(run, steps) for run in runs] if what == "diagram" else []
-    width = _COLUMN * (2 if any(shown) else max(columns, 1.5)) + _EXTRA
-    heights = [_PANEL * len(panels) + 0.4]
+    shown, note = at_most([_shown(run, steps) for run in runs if what == "diagram"])
+    width = PAGE if any(shown) or window is not None else _WIDTH
+    handles = _handles(runs)
+    heights = [_PANEL * len(panels) + _LABELS + legend_height(label_of(handles), width)]
     if any(shown):
-        shapes = portrait_lines(runs, shown, kind)
+        shapes = portrait_lines(runs, shown, kind, note)
         heights.insert(0, shapes.height(width))
     figure = new_figure(width, sum(heights))
     parts = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
@@ -95,7 +105,7 @@ def runs_figure(
     if any(shown):
         shapes.draw(parts[0])
         number_shapes(axes[0], window, runs, shown, kind)
-    legend_above(parts[-1], _handles(runs))
+    legend_above(parts[-1], handles)
     return figure
 
 
@@ -109,12 +119,15 @@ def common_window(runs: Sequence[Run]) -> tuple[float, float] | None:
 
 
 def _curves(run: Run, number: int) -> list[Curve]:
-    """Return the curves of a run in the colour and with the marker of its number."""
-    looks = {**style(number), "markevery": ((_SHIFT * number) % _APART, _APART)}
+    """Return the curves of a run in the colour and with the marker of its number.
+
+    A sweep has a marker for each row; branches are smooth between theirs.
+    """
+    looks = tagged(number) if run.branches else style(number, len(run.rows))
     look = Look(
         solid={**looks, "linestyle": "-", "linewidth": 1.2, "zorder": 3},
         dashed={**looks, "linestyle": DASHES, "linewidth": 0.9, "zorder": 2},
-        bad={"linestyle": "none", "marker": "x", "color": looks["color"], "markersize": 5},
+        bad={**CROSS, "color": looks["color"]},
         label=run.label,
     )
     return [(series, look) for series in run.series]
@@ -133,9 +146,7 @@ def _handles(runs: Sequence[Run]) -> list[Artist]:
     if any(_falls(run) for run in runs):
         handles.append(Line2D([], [], color="0.3", linestyle=DASHES, label="load falling"))
     if any(not row.converged for run in runs for row in run.rows):
-        handles.append(
-            Line2D([], [], marker="x", linestyle="none", color="0.3", label="not converged")
-        )
+        handles.append(Line2D([], [], color="0.3", label="not converged", **CROSS))
     return handles
 
 

@@ -7,18 +7,21 @@ import logging
 import math
 import os
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from eulerplateau.errors import EulerPlateauError
 from eulerplateau.mesh import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, FigureBase
 
 # What draws a shape into a field.
 DrawShape = Callable[["Axes"], None]
@@ -38,8 +41,17 @@ _UNDATED: dict[str, dict[str, None]] = {
     "svg": {"Date": None},
     "png": {},
 }
-_DPI = 200
-_WIDTH, _EXTRA, _HEIGHT = 3.4, 0.6, 7.2
+_DPI = 300
+# Inches: one column of a journal, two, and what a panel takes of the height.
+COLUMN, PAGE, _PANEL, _ABOVE = 8.6 / 2.54, 17.8 / 2.54, 1.35, 1.2
+# Inches above and below each part of a figure.
+_ROOM = 0.06
+# How far a bar is below its field, as a part of that.
+_BELOW = 0.04
+# Points, at the size at which figures are printed: of labels, and of ticks and legends.
+TEXT, SMALL = 8.0, 7.0
+# Small letters of a line of text per inch.
+_LETTERS = 16.0
 # A range of loads narrower than this part of all loads gets a column of its own.
 _NARROW = 0.2
 
@@ -55,6 +67,7 @@ class Portraits:
     lines : int, how many lines are written above each
     widest : float, what is wide enough for one, in inches
     note : str, what there is to be said below them, in a line
+    bar : float, the length of the bar that shows the scale, which the note explains
     """
 
     draw: Sequence[Sequence[DrawShape]]
@@ -62,6 +75,7 @@ class Portraits:
     lines: int = 1
     widest: float = math.inf
     note: str = ""
+    bar: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -103,19 +117,46 @@ def new_figure(width: float, height: float) -> Figure:
     """Return an empty figure of so many inches that leaves its parts the room they need."""
     load_matplotlib()
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    return Figure(figsize=(width, height), layout="constrained")
+    return Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(h_pad=_ROOM))
 
 
-def figure_of_panels(columns: int) -> Figure:
-    """Return an empty figure for panels above each other in so many columns."""
-    return new_figure(_WIDTH * columns + _EXTRA, _HEIGHT)
+def figure_of_panels(columns: int, count: int) -> Figure:
+    """Return an empty figure for `count` panels above each other in so many columns."""
+    return new_figure(COLUMN if columns == 1 else PAGE, _PANEL * count + _ABOVE)
 
 
 def frame(ax: Axes) -> None:
-    """Turn the ticks inwards, on all sides, and leave the curves some room."""
+    """Turn the ticks inwards, on all sides, and leave the curves some room.
+
+    Letters get the size at which they are read in print.
+    """
     ax.margins(x=0.03, y=0.08)
-    ax.tick_params(direction="in", top=True, right=True)
+    ax.tick_params(direction="in", which="both", top=True, right=True, labelsize=SMALL)
+    for text in (ax.xaxis.label, ax.yaxis.label, ax.title):
+        text.set_fontsize(TEXT)
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.get_offset_text().set_fontsize(SMALL)
+
+
+def wrapped(note: str, width: float) -> str:
+    """Return a note in lines that have room in so many inches, in small letters."""
+    letters = int(_LETTERS * width)
+    return "\n".join(textwrap.fill(line, letters) for line in note.splitlines())
+
+
+def write_below(figure: FigureBase, note: str) -> None:
+    """Write a note below a figure, in lines that have room there."""
+    width = figure.get_figure(root=True).get_figwidth()
+    figure.supxlabel(wrapped(note, width), fontsize=SMALL, color="0.3")
+
+
+def scale_bar(ax: Axes, length: float) -> None:
+    """Draw a bar of so much below the lower left corner of a field of shapes."""
+    left, low = ax.get_xlim()[0], ax.get_ylim()[0]
+    place = [low - _BELOW * np.ptp(ax.get_ylim())] * 2
+    ax.plot([left, left + length], place, color=BLACK, linewidth=1.8, clip_on=False)
 
 
 def enlarged(low: float, high: float, loads: Iterable[float]) -> tuple[float, float] | None:

@@ -17,21 +17,45 @@ from eulerplateau.pictures.figure import ABS_KAPPA_N, MINUS_K, FieldLook, Portra
 from eulerplateau.pictures.kinds import KindPictures, Stage
 from eulerplateau.pictures.panels import Panel, panel
 from eulerplateau.pictures.vector_film import draw_film, room
-from eulerplateau.runs import Branch, Row, Series, energy_above, is_planar, read_shape
+from eulerplateau.runs import (
+    FLAT_ERRORS,
+    Branch,
+    Row,
+    Series,
+    energy_above,
+    is_planar,
+    read_shape,
+)
 
 # A planar film's twist jumps by half turns where its rim passes through itself.
 _JUMP = 90.0
 
-_SWEEP = (
-    panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),
-    panel(MINUS_K, lambda row: -row.total_gauss_curvature),
-    panel("waist twist (deg)", lambda row: abs(row.waist_twist), ticks=(0, 90, 180)),
-    panel("short / long axis", lambda row: row.aspect, limits=(0, 1.05)),
+_BENT = panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n, error=FLAT_ERRORS["abs_kappa_n"])
+_CURVED = panel(
+    MINUS_K,
+    lambda row: -row.total_gauss_curvature,
+    error=FLAT_ERRORS["total_gauss_curvature"],
+)
+_TWISTED = panel(
+    "waist twist (deg)",
+    lambda row: abs(row.waist_twist),
+    error=FLAT_ERRORS["waist_twist"],
+    ticks=(0, 90, 180),
 )
 
 
 def _over_disk(row: Row) -> float:
     return row.energy / (row.sigma_hat / (4 * pi) + 4 * pi**2)
+
+
+_OVER_DISK = panel(r"$E\,/\,(\hat\sigma/4\pi+4\pi^2)$", _over_disk)
+_SWEEP = (
+    _BENT,
+    _CURVED,
+    _TWISTED,
+    panel("short / long axis", lambda row: row.aspect, limits=(0, 1.05)),
+    _OVER_DISK,
+)
 
 
 def _said(column: str) -> Callable[[Row], float | None]:
@@ -40,12 +64,12 @@ def _said(column: str) -> Callable[[Row], float | None]:
 
 
 _PLOTS: dict[str, tuple[Panel, ...]] = {
-    "diagram": (panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),),
+    "diagram": (_BENT,),
     "energy": (
         panel(r"$E\,L/\alpha$", lambda row: row.energy),
-        panel(r"$E\,/\,(\hat\sigma/4\pi+4\pi^2)$, flat disk: 1", _over_disk),
+        _OVER_DISK,
     ),
-    "curvature": (panel(MINUS_K, lambda row: -row.total_gauss_curvature),),
+    "curvature": (_CURVED,),
     "eigenvalue": (
         panel(
             r"smallest eigenvalue $\lambda_1 L^4/\alpha$",
@@ -72,8 +96,14 @@ def _branches(branches: Sequence[Branch]) -> tuple[Panel, ...]:
         return signed_twists(cast(Branch, series))
 
     return (
-        panel(ABS_KAPPA_N, lambda row: row.abs_kappa_n),
-        Panel("waist twist (deg)", twists, jump=_JUMP, solid_only=True),
+        _BENT,
+        Panel(
+            "waist twist (deg)",
+            twists,
+            error=FLAT_ERRORS["waist_twist"],
+            jump=_JUMP,
+            solid_only=True,
+        ),
         Panel(r"$(E-E_0)\,L/\alpha$", lambda branch: [excess(branch)], solid_only=True),
     )
 

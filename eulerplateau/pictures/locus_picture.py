@@ -5,16 +5,18 @@ from __future__ import annotations
 from eulerplateau.pictures.figure import (
     BLACK,
     BLUE,
+    COLUMN,
+    TEXT,
     VERMILION,
     drawn,
     frame,
     new_figure,
     save,
 )
+from eulerplateau.pictures.looks import MARKERS, legend_above
 from eulerplateau.runs import Locus
 
 LOCUS = "locus.png"
-_MARKS = "ovs^DPX"
 
 
 def draw_locus(locus: Locus) -> bool:
@@ -26,7 +28,7 @@ def draw_locus(locus: Locus) -> bool:
 def plot_locus(locus: Locus) -> None:
     """Draw the second parameter upwards over the first, special points marked."""
     first, second = locus.names
-    figure = new_figure(5.6, 4.4)
+    figure = new_figure(COLUMN, 3.2)
     ax = figure.subplots()
     rows = sorted(locus.rows, key=lambda row: float(row["arclength"]))
     for stable, look in ((True, "-"), (False, "--")):
@@ -44,13 +46,13 @@ def plot_locus(locus: Locus) -> None:
         ax.plot(
             [row[first.column] for row in points],
             [row[second.column] for row in points],
-            _MARKS[number],
+            MARKERS[number],
             color=BLACK if kind == "start" else VERMILION,
             markersize=5,
             label=kind,
         )
     ax.set(xlabel=first.label, ylabel=second.label)
-    ax.set_title(f"{rows[0]['kind']}s", fontsize=10)
+    ax.set_title(f"{rows[0]['kind']}s", fontsize=TEXT)
     frame(ax)
-    ax.legend(frameon=False, fontsize=8)
+    legend_above(figure, ax.get_legend_handles_labels()[0])
     save(figure, locus.folder / LOCUS)

@@ -11,8 +11,16 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import PowerLaw, fit_power
 from eulerplateau.errors import OutputError
-from eulerplateau.pictures.figure import ABS_KAPPA_N, MINUS_K, frame, new_figure
-from eulerplateau.pictures.panels import legend_above, style
+from eulerplateau.pictures.figure import (
+    ABS_KAPPA_N,
+    MINUS_K,
+    PAGE,
+    SMALL,
+    frame,
+    load_matplotlib,
+    new_figure,
+)
+from eulerplateau.pictures.looks import legend_above, style
 from eulerplateau.runs import Quantity, Run
 
 if TYPE_CHECKING:
@@ -73,7 +81,10 @@ def fit_onset(run: Run) -> tuple[Onset, Onset]:
 def onset_figure(runs: Sequence[Run]) -> Figure:
     """Return the figure: each quantity over the load's distance, linear and log-log."""
     fits = [fit_onset(run) for run in runs]
-    figure = new_figure(7.4, 6.2 + 0.2 * len(runs))
+    load_matplotlib()
+    from matplotlib.lines import Line2D
+
+    figure = new_figure(PAGE, 5.6 + 0.2 * len(runs))
     axes = figure.subplots(2, 2)
     for (label, quantity), column, onsets in zip(
         _PANELS, axes.T, zip(*fits, strict=True), strict=True
@@ -86,8 +97,9 @@ def onset_figure(runs: Sequence[Run]) -> Figure:
             frame(ax)
         column[0].set_xlabel(r"$\varepsilon$ (%)")
         column[1].set_xlabel(r"$\varepsilon=\,$load$\,/\,$onset$\,-\,1$")
-        column[1].legend(loc="upper left", frameon=False, fontsize=8)
-    legend_above(figure, axes[0, 0].get_legend_handles_labels()[0])
+        column[1].legend(loc="upper left", frameon=False, fontsize=SMALL)
+    law = Line2D([], [], color="0.3", linewidth=0.9, label="fitted law")
+    legend_above(figure, [*axes[0, 0].get_legend_handles_labels()[0], law])
     return figure
 
 

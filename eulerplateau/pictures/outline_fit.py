@@ -8,7 +8,16 @@ from pathlib import Path
 import numpy as np
 
 from eulerplateau.exact import OutlineFit
-from eulerplateau.pictures.figure import BLACK, BLUE, drawn, frame, new_figure, save
+from eulerplateau.pictures.figure import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    SMALL,
+    drawn,
+    frame,
+    new_figure,
+    save,
+)
 
 
 def draw_outline_fit(
@@ -29,13 +38,13 @@ def plot_outline_fit(
     Raises OutputError if `path` cannot be written.
     """
     within = f" ({unit})" if unit else " (as given)"
-    figure = new_figure(5.4, 6.2)
+    figure = new_figure(COLUMN, 4.2)
     shape, errors = figure.subplots(2, 1, height_ratios=(2.2, 1.0))
     x, y = np.asarray(points).T
     shape.plot(x, y, "o", color=BLACK, markersize=2.5, label="outline")
     shape.plot(*fit.curve.T, color=BLUE, linewidth=1.2, label="fit")
     shape.set(aspect="equal", xlabel=f"x{within}", ylabel=f"y{within}")
-    shape.legend(frameon=False, fontsize=9)
+    shape.legend(frameon=False, fontsize=SMALL)
     frame(shape)
     errors.axhline(0, color=BLUE, linewidth=1.2)
     errors.plot(fit.arc, fit.distances, "o", color=BLACK, markersize=2.5)

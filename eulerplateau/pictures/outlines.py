@@ -67,7 +67,7 @@ def outlines(paths: Sequence[Sequence[Path]]) -> Portraits:
     window = float(half[0]), float(half[1])
     note = (
         "arrows: traction on the substrate, the longest "
-        rf"${largest:.3g}\,\alpha/R_0^2$; dots: adhesions at rest"
+        rf"${largest:.3g}\,\alpha/R_0^2$; dots: adhesions at rest; bar: $R_0$"
     )
     draw = [
         [
@@ -76,7 +76,7 @@ def outlines(paths: Sequence[Sequence[Path]]) -> Portraits:
         ]
         for own in cells
     ]
-    return Portraits(draw, window, lines=2, widest=_WIDEST, note=note)
+    return Portraits(draw, window, lines=2, widest=_WIDEST, note=note, bar=1.0)
 
 
 def draw_outline(

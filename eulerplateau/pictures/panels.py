@@ -5,27 +5,18 @@ Every diagram of a run is a list of panels and a list of curves handed to `draw_
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.pictures.figure import (
-    BLACK,
-    BLUE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    frame,
-)
-from eulerplateau.runs import Quantity, Series
+from eulerplateau.pictures.figure import frame
+from eulerplateau.pictures.looks import Look
+from eulerplateau.runs import Quantity, Series, without_noise
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import FigureBase
     from matplotlib.lines import Line2D
@@ -33,11 +24,6 @@ if TYPE_CHECKING:
 
 Band = tuple[float, float]
 
-DASHES = (0, (4, 2))
-_COLOURS = (BLUE, VERMILION, BLACK, GREEN, PURPLE, ORANGE, SKY)
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-# Letters of a legend per inch, and what the line or marker before a label takes.
-_LETTERS, _KEY = 13.0, 9
 # Part of a panel's whole range below which the solid curves' own is rounding.
 _FLAT = 1e-3
 
@@ -50,6 +36,7 @@ class Panel:
     ----------
     label : str, of the axis
     values : of a series of n rows the curves (n,), one, or one for each side of a film
+    error : of a row, below which it is zero; a curve that is throughout is drawn so
     jump : float; a branch has a gap where its curve changes by more from point to point
     solid_only : bool, whether the range is that of the solid curves and the others may
         leave it
@@ -60,6 +47,7 @@ class Panel:
 
     label: str
     values: Callable[[Series], Sequence[FloatArray]]
+    error: Callable[[Any], float] | None = None
     jump: float = np.inf
     solid_only: bool = False
     logarithmic: bool = False
@@ -67,42 +55,20 @@ class Panel:
     ticks: Sequence[float] | None = None
     limits: Band | None = None
 
+    def curves(self, series: Series) -> Sequence[FloatArray]:
+        """Return the curves (n,) of a series as they are drawn, without noise."""
+        values = self.values(series)
+        if self.error is None:
+            return values
+        return [without_noise(series.rows, one, self.error) for one in values]
+
 
 def panel(label: str, quantity: Quantity, **options: Any) -> Panel:
     """Return the panel of a quantity that a row has one value of."""
     return Panel(label, lambda series: [series.values(quantity)], **options)
 
 
-@dataclass(frozen=True)
-class Look:
-    """How a curve is drawn, in matplotlib's words.
-
-    Attributes
-    ----------
-    solid, dashed : of its pieces, as they are solid or not
-    bad : of its rows that are not converged
-    label : str or None, in the legend; curves that share it are named once
-    """
-
-    solid: Mapping[str, Any]
-    dashed: Mapping[str, Any]
-    bad: Mapping[str, Any] = field(default_factory=dict)
-    label: str | None = None
-
-
 Curve = tuple[Series, Look]
-
-
-def style(number: int) -> dict[str, Any]:
-    """Return how the run of that number is drawn: told apart without colour by marker."""
-    colour = _COLOURS[number % len(_COLOURS)]
-    return {
-        "color": colour,
-        "marker": _MARKERS[number % len(_MARKERS)],
-        "markersize": 4.0,
-        "markerfacecolor": "white" if number % 2 else colour,
-        "markeredgewidth": 0.9,
-    }
 
 
 def draw_panels(
@@ -152,28 +118,19 @@ def draw_panels(
         for ax in line if what.solid_only else fitted:
             _fit_height(ax, margin, what.solid_only)
         if what.ticks is not None:
-            line[0].set_yticks(what.ticks)
+            _hold(line[0], what.ticks, margin)
         if what.limits is not None:
             line[0].set_ylim(*what.limits)
     return axes
 
 
-def legend_above(
-    figure: FigureBase,
-    handles: Sequence[Artist],
-    columns: int | None = None,
-    size: float = 8.0,
-) -> None:
-    """Explain labelled `handles` above the panels, in as many columns as have room."""
-    longest = max((len(str(handle.get_label())) for handle in handles), default=0)
-    room = _LETTERS * figure.get_figure(root=True).get_figwidth()
-    figure.legend(
-        handles=handles,
-        loc="outside upper center",
-        ncols=columns or max(1, int(room / (longest + _KEY))),
-        frameon=False,
-        fontsize=size,
-    )
+def _hold(ax: Axes, ticks: Sequence[float], margin: float) -> None:
+    """Put ticks where they are said to be, and leave room beyond them."""
+    low, high = min(ticks), max(ticks)
+    room = margin * (high - low)
+    below, above = ax.get_ylim()
+    ax.set_yticks(ticks)
+    ax.set_ylim(min(below, low - room), max(above, high + room))
 
 
 def _shade(ax: Axes, bands: Sequence[Band], meaning: str) -> None:
@@ -191,7 +148,7 @@ def _draw(ax: Axes, what: Panel, curves: Sequence[Curve]) -> None:
         named.add(label)
         return None if known else label
 
-    drawn = [(s, values, look) for s, look in curves for values in what.values(s)]
+    drawn = [(s, values, look) for s, look in curves for values in what.curves(s)]
     for series, values, look in drawn:
         for piece in series.pieces(values, what.jump):
             style = look.solid if piece.solid else look.dashed

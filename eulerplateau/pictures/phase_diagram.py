@@ -12,8 +12,12 @@ from eulerplateau.pictures.figure import (
     BLACK,
     BLUE,
     ORANGE,
+    PAGE,
+    SMALL,
+    TEXT,
     VERMILION,
     drawn,
+    frame,
     new_figure,
     save,
 )
@@ -33,14 +37,15 @@ _NAMES = {
     "unlike sides": "the regular cell is unstable",
     "collapsed": "no smooth regular cell",
 }
+_DASHDOT = (0, (6, 1.5, 1, 1.5))
 _LINES: dict[str, dict[str, Any]] = {
     "inflection": {
         "color": BLUE,
         "linestyle": (0, (5, 2)),
         "label": r"$\sigma_1^*$: sides straight in the middle",
     },
-    "symmetry lost": {"color": ORANGE, "label": "symmetry is lost"},
-    "symmetry regained": {"color": ORANGE},
+    "symmetry lost": {"color": ORANGE, "linestyle": _DASHDOT, "label": "symmetry is lost"},
+    "symmetry regained": {"color": ORANGE, "linestyle": _DASHDOT},
     "fold": {"color": VERMILION, "label": "fold of the regular cell"},
 }
 _RESOLUTION = 400
@@ -60,7 +65,7 @@ def draw_phase_diagram(diagram: PhaseDiagram) -> bool:
 
 def phase_figure(diagram: PhaseDiagram) -> Any:
     """Return the figure: regions, lines, special points, a shape in each region."""
-    figure = new_figure(7.4, 6.0)
+    figure = new_figure(PAGE, 5.6)
     ax = figure.subplots()
     _fill(ax, diagram)
     for name, line in diagram.lines.items():
@@ -68,12 +73,15 @@ def phase_figure(diagram: PhaseDiagram) -> Any:
     if diagram.sigma_p is not None:
         label = r"$\sigma_p$: stars from here on"
         ax.axvline(diagram.sigma_p, color="0.4", linestyle=":", linewidth=1.4, label=label)
-    for sigma, ks in diagram.points.values():
-        ax.plot(sigma, ks, "o", color=BLACK, markersize=5, markerfacecolor="white")
+    open_one: dict[str, Any] = {"color": BLACK, "markersize": 5, "markerfacecolor": "white"}
+    label = "softest substrate: inflected, folded"
+    if diagram.points:
+        ax.plot(*zip(*diagram.points.values(), strict=True), "o", **open_one, label=label)
     ax.set(xscale="log", yscale="log", xlim=diagram.sigma_hat, ylim=diagram.ks_hat)
     ax.set_xlabel(r"$\hat\sigma=\sigma R_0^3/\alpha$")
     ax.set_ylabel(r"$\hat k_s=k_sR_0^3/\alpha$")
-    ax.tick_params(direction="in", which="both", top=True, right=True)
+    frame(ax)
+    ax.set(xlim=diagram.sigma_hat, ylim=diagram.ks_hat)
     names: list[str] = []
     taken: list[FloatArray] = []
     for region in sorted(diagram.shapes, key=lambda region: -diagram.room[region]):
@@ -82,9 +90,9 @@ def phase_figure(diagram: PhaseDiagram) -> Any:
         _draw_cell(ax, cell, number, taken[-1])
         ending = "" if cell.converged else f"; the polygon ends {cell.status.value}"
         names.append(f"{number}  {_NAMES[region]}{ending}")
-    listed = "\n".join(sorted(names))
-    ax.text(0.98, 0.03, listed, transform=ax.transAxes, ha="right", fontsize=8)
-    figure.legend(loc="outside upper center", ncols=2, frameon=False, fontsize=9)
+    listed = "\n".join([*sorted(names), "dots: adhesions at rest"])
+    ax.text(0.98, 0.03, listed, transform=ax.transAxes, ha="right", fontsize=SMALL)
+    figure.legend(loc="outside upper center", ncols=2, frameon=False, fontsize=SMALL)
     return figure
 
 
@@ -145,4 +153,4 @@ def _draw_cell(ax: Axes, cell: CellEquilibrium, number: int, centre: FloatArray)
         inset.plot(*np.stack(pair).T, color=VERMILION, linewidth=0.8)
     inset.set(xlim=(-_ROOM, _ROOM), ylim=(-_ROOM, _ROOM), aspect="equal")
     inset.set_axis_off()
-    inset.set_title(str(number), fontsize=9, fontweight="bold", pad=0)
+    inset.set_title(str(number), fontsize=TEXT, fontweight="bold", pad=0)

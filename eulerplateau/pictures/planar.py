@@ -18,11 +18,16 @@ from eulerplateau.exact.planar import (
 from eulerplateau.pictures.figure import (
     BLACK,
     BLUE,
+    PAGE,
+    SMALL,
+    TEXT,
     VERMILION,
     drawn,
     frame,
     new_figure,
     save,
+    scale_bar,
+    write_below,
 )
 
 if TYPE_CHECKING:
@@ -33,6 +38,7 @@ GALLERY, ENERGY = "planar-gallery.png", "planar-energy.png"
 _LOAD = r"$\hat\sigma=\sigma L^3/\alpha$"
 # Half the length of the longest film, and a margin.
 _HALF_WIDTH = 0.26
+_BAR = 0.1
 _FILM, _ROD = "#CFE3F2", BLACK
 _COLUMNS = (
     "near threshold",
@@ -44,7 +50,7 @@ _COLUMNS = (
 # The loads of columns one and two, as a part of the way to the first contact, and of the
 # last column, over the onset of line contact.
 _EARLY, _MIDDLE, _LATE = 0.05, 0.4, 5.0
-_COLOURS = {2: BLUE, 3: VERMILION}
+_COLOURS, _MARKERS = {2: BLUE, 3: VERMILION}, {2: "o", 3: "s"}
 _STYLES: dict[Regime, Any] = {
     Regime.BUCKLED: "-",
     Regime.POINT_CONTACT: (0, (5, 1.5)),
@@ -65,17 +71,19 @@ def plot_gallery(path: Path) -> None:
     Raises OutputError if the PNG file `path` cannot be written.
     """
     heights = {2: 0.13, 3: 0.185, 4: 0.185, 5: 0.185}
-    figure = new_figure(9.6, 6.4)
+    figure = new_figure(PAGE, 5.0)
     axes = figure.subplots(
         len(heights), len(_COLUMNS), height_ratios=list(heights.values())
     )
     for row, (n, height) in zip(axes, heights.items(), strict=True):
         for ax, load in zip(row, _gallery_loads(thresholds(n)), strict=True):
             _draw_film(ax, planar_film(n, load), (_HALF_WIDTH, height))
-            _write(ax, (0.5, -0.14), rf"$\hat\sigma={_readable(load)}$", 9)
-        _write(row[0], (-0.1, 0.5), rf"$n={n}$", 12)
+            _write(ax, (0.5, -0.14), rf"$\hat\sigma={_readable(load)}$", SMALL)
+        _write(row[0], (-0.1, 0.5), rf"$n={n}$", TEXT)
     for ax, name in zip(axes[0], _COLUMNS, strict=True):
-        _write(ax, (0.5, 1.2), name, 11)
+        _write(ax, (0.5, 1.2), name, TEXT)
+    scale_bar(axes[0, 0], _BAR)
+    write_below(figure, f"all at one scale; bar: {_BAR:g} L")
     save(figure, path)
 
 
@@ -84,18 +92,21 @@ def plot_energy(path: Path) -> None:
 
     Raises OutputError if the PNG file `path` cannot be written.
     """
-    figure = new_figure(7.4, 5.4)
+    figure = new_figure(PAGE, 4.9)
     ax = figure.subplots()
     low, high = 500.0, 1.5e5
     loads = np.geomspace(low, high, 200)
     ax.plot(loads, loads / (4 * pi) + 4 * pi**2, "--", color="0.5", label="disk")
     for n, colour in _COLOURS.items():
         _draw_energies(ax, thresholds(n), high, colour)
+    ax.plot([], [], "o", color="0.3", markersize=4, label="threshold of what follows")
+    open_ones: Any = {"color": "0.3", "markersize": 5, "fillstyle": "none"}
+    ax.plot([], [], "o", **open_ones, label="shape beside the curve")
     ax.set(xscale="log", yscale="log", xlim=(low, high), ylim=(60, 1.3e4))
     ax.set_xlabel(_LOAD)
     ax.set_ylabel(r"$E\,/\,(\alpha/L)$")
     frame(ax)
-    ax.legend(loc="upper left", frameon=False, fontsize=9)
+    ax.legend(loc="upper left", frameon=False, fontsize=SMALL)
     save(figure, path)
 
 
@@ -139,13 +150,14 @@ def _draw_energies(ax: Axes, limits: Thresholds, high: float, colour: str) -> No
         energies = [planar_film(limits.lobes, load).energy for load in loads]
         label = f"n = {limits.lobes}, {regime.value.replace('-', ' ')}"
         ax.plot(loads, energies, color=colour, linestyle=_STYLES[regime], label=label)
-        ax.plot(start, energies[0], "o", color=colour, markersize=4)
+        ax.plot(start, energies[0], _MARKERS[limits.lobes], color=colour, markersize=4)
         _draw_inset(ax, planar_film(limits.lobes, sqrt(start * end)), colour)
 
 
 def _draw_inset(ax: Axes, film: PlanarFilm, colour: str) -> None:
     """Mark the film on its curve and draw its shape: below for n = 2, above for n = 3."""
-    ax.plot(film.tension, film.energy, "o", color=colour, markersize=5, fillstyle="none")
+    marker = _MARKERS[film.lobes]
+    ax.plot(film.tension, film.energy, marker, color=colour, markersize=5, fillstyle="none")
     # Further off where the disk's line is close.
     distance = 2.0 if film.regime is Regime.BUCKLED else 1.55
     height = film.energy * (distance if film.lobes > 2 else 1 / distance)

@@ -8,9 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eulerplateau.pictures.figure import DrawShape, Portraits
+from eulerplateau.pictures.figure import (
+    SMALL,
+    DrawShape,
+    Portraits,
+    scale_bar,
+    wrapped,
+    write_below,
+)
 from eulerplateau.pictures.kinds import KindPictures
-from eulerplateau.pictures.panels import Band, style
+from eulerplateau.pictures.looks import style
+from eulerplateau.pictures.panels import Band
 from eulerplateau.runs import Run
 
 if TYPE_CHECKING:
@@ -18,73 +26,111 @@ if TYPE_CHECKING:
     from matplotlib.figure import FigureBase
     from numpy.typing import NDArray
 
-_PER_LINE = 6
+# Shapes in a line, and in all.
+_PER_LINE, _MOST = 6, 12
 # A curve steeper than this, in shares of its panel, has its numbers beside it.
 _STEEP = 1.5
 # Inches.
-_TITLE, _NOTE = 0.25, 0.3
+_TITLE, _NOTE = 0.25, 0.28
+
+
+# A shape that is drawn: the number of its run, its row, and what draws it.
+Drawn = tuple[int, Any, DrawShape]
 
 
 @dataclass(frozen=True)
 class PortraitLines:
-    """Shapes in lines, each line with the number of its run, all at one scale.
+    """Shapes in lines, all at one scale.
 
     Attributes
     ----------
-    lines : the number of a run, and of its shapes the rows with what draws them
+    lines : of shapes, in the order of their runs
     portraits : the scale, and what is written
     kind : what the pictures show of such runs
+    note : str, which shapes there are, in a line; empty if all that were asked for
     """
 
-    lines: list[tuple[int, Sequence[tuple[Any, DrawShape]]]]
+    lines: list[Sequence[Drawn]]
     portraits: Portraits
     kind: KindPictures
+    note: str = ""
 
     @property
     def columns(self) -> int:
         """How many shapes there are in the longest line."""
-        return max(len(line) for _, line in self.lines)
+        return max(map(len, self.lines))
+
+    @property
+    def notes(self) -> str:
+        """What stands below the shapes."""
+        return "\n".join(filter(None, (self.portraits.note, self.note)))
 
     def height(self, width: float) -> float:
         """Return the height (inches) in which shapes of this width have room."""
         half, title = self.portraits.half, self.portraits.lines * _TITLE
         shape = min(width / self.columns, self.portraits.widest) * half[1] / half[0]
-        note = _NOTE if self.portraits.note else 0.0
-        return len(self.lines) * (shape + title) + note
+        notes = _NOTE * len(wrapped(self.notes, width).splitlines())
+        return len(self.lines) * (shape + title) + notes
 
     def draw(self, figure: FigureBase) -> None:
         """Draw the shapes, numbered through all runs, with their loads above them."""
         axes = figure.subplots(len(self.lines), self.columns, squeeze=False)
         count = 0
-        for (number, line), cells in zip(self.lines, axes, strict=True):
+        for line, cells in zip(self.lines, axes, strict=True):
             for ax in cells:
                 ax.set_axis_off()
-            for ax, (row, draw) in zip(cells, line, strict=False):
+            for ax, (number, row, draw) in zip(cells, line, strict=False):
                 count += 1
                 draw(ax)
+                if self.portraits.bar and count == 1:
+                    scale_bar(ax, self.portraits.bar)
                 place = f"${row.load_name.tex}={row.load:.5g}$"
                 state = self.kind.state(row)
                 words = f"{state}\n{place}" if state else place
                 title = rf"$\bf{{{count}}}$   {words}"
-                ax.set_title(title, fontsize=7.5, color=style(number)["color"], pad=3)
-        if self.portraits.note:
-            figure.supxlabel(self.portraits.note, fontsize=7.5, color="0.3")
+                ax.set_title(title, fontsize=SMALL, color=style(number)["color"], pad=3)
+        if self.notes:
+            write_below(figure, self.notes)
+
+
+def at_most(
+    shown: Sequence[Sequence[Any]], most: int = _MOST
+) -> tuple[list[Sequence[Any]], str]:
+    """Return of the rows of each run so many in all, evenly chosen, and a note if some.
+
+    The first and the last are among them.
+    """
+    total = sum(map(len, shown))
+    if total <= most:
+        return list(shown), ""
+    kept = {round(place) for place in np.linspace(0, total - 1, most)}
+    first = np.cumsum([0, *map(len, shown)])
+    chosen: list[Sequence[Any]] = [
+        [row for place, row in enumerate(rows, start) if place in kept]
+        for start, rows in zip(first, shown, strict=False)
+    ]
+    return chosen, f"shapes: {most} of the {total} states of these runs, evenly chosen"
 
 
 def portrait_lines(
-    runs: Sequence[Run], shown: Sequence[Sequence[Any]], kind: KindPictures
+    runs: Sequence[Run], shown: Sequence[Sequence[Any]], kind: KindPictures, note: str = ""
 ) -> PortraitLines:
-    """Return the shapes of the rows `shown` of each run, at least one in all."""
+    """Return the shapes of the rows `shown` of each run, at least one in all.
+
+    Each run begins a line, unless that makes too many of them.
+    """
     paths = [
         [run.shape_path(row) for row in rows] for run, rows in zip(runs, shown, strict=True)
     ]
     portraits = kind.portraits(paths)
-    lines = [
-        (number, line)
-        for number, (rows, draw) in enumerate(zip(shown, portraits.draw, strict=True))
-        for line in _lines(list(zip(rows, draw, strict=True)))
+    drawn = [
+        [(number, row, draw) for row, draw in zip(rows, draws, strict=True)]
+        for number, (rows, draws) in enumerate(zip(shown, portraits.draw, strict=True))
     ]
-    return PortraitLines(lines, portraits, kind)
+    lines = [line for own in drawn for line in _lines(own)]
+    if len(lines) > _MOST // _PER_LINE + 1:
+        lines = _lines([shape for own in drawn for shape in own])
+    return PortraitLines(lines, portraits, kind, note)
 
 
 def number_shapes(
@@ -125,12 +171,12 @@ def number_shapes(
             )
 
 
-def _lines(
-    shapes: Sequence[tuple[Any, DrawShape]],
-) -> list[Sequence[tuple[Any, DrawShape]]]:
-    """Break the shapes of a run into lines of nearly equal length."""
-    count = max(-(-len(shapes) // _PER_LINE), 1)
-    length = max(-(-len(shapes) // count), 1)
+def _lines(shapes: Sequence[Drawn]) -> list[Sequence[Drawn]]:
+    """Break shapes into lines of nearly equal length; no shapes make none."""
+    if not shapes:
+        return []
+    count = -(-len(shapes) // _PER_LINE)
+    length = -(-len(shapes) // count)
     return [shapes[first : first + length] for first in range(0, len(shapes), length)]
 
 

@@ -11,7 +11,7 @@
                     folder.py: the folder
     shape_files.py  shapes/*.vtp and their fields, written and read
     record.py       `read_run`: a folder read back; series.py: the curves of its diagram;
-                    states.py: its distinct states
+                    states.py: its distinct states; noise.py: what of them is rounding
 
 What has been computed is on disk row by row, and valid after every step.
 """

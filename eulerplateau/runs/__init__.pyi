@@ -14,6 +14,7 @@ from .exploration import Exploration as Exploration, run_branches as run_branche
 from .kinds import Kind as Kind
 from .locus import run_locus as run_locus
 from .locus_record import Asked as Asked, Locus as Locus
+from .noise import FLAT_ERRORS as FLAT_ERRORS, without_noise as without_noise
 from .phase_diagram import run_phase_diagram as run_phase_diagram
 from .phases import REGIONS as REGIONS, PhaseDiagram as PhaseDiagram
 from .plan import load_with as load_with, planned as planned, run_name as run_name

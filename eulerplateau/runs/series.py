@@ -245,8 +245,13 @@ def energy_above(*first: Series) -> Callable[[Series], FloatArray]:
     energy = np.array([known[load].energy for load in loads])
     slope = np.array([known[load].energy_rate for load in loads])
     base = CubicHermiteSpline(loads, energy, slope, extrapolate=False)
+
+    def first_energy(load: float) -> float:
+        # Evaluated where it is known, a cubic is wrong by its rounding.
+        return float(known[load].energy if load in known else base(load))
+
     return lambda branch: np.array(
-        [row.energy - float(base(row.load)) for row in branch.rows]
+        [row.energy - first_energy(row.load) for row in branch.rows]
     )
 
 

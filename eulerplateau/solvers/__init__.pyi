@@ -2,6 +2,7 @@ from .descent import Descent as Descent
 from .equilibrium import (
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,
     RESOLVED_TURNING as RESOLVED_TURNING,
+    SOFTEST_BENDING as SOFTEST_BENDING,
     Equilibrium as Equilibrium,
     Stability as Stability,
     Status as Status,

@@ -18,16 +18,18 @@ from scripts.studies.error_vs_time.arithmetic import (
 )
 from scripts.studies.error_vs_time.conformal import mesh_free, mesh_free_repeats
 from scripts.studies.error_vs_time.ours import solvers
+from scripts.studies.error_vs_time.picture import MARKERS, draw
 from scripts.studies.error_vs_time.records import (
     HARMONICS,
     Measurement,
     Point,
     extrapolated,
     points,
+    read_csv,
     with_errors,
     write_csv,
 )
-from scripts.studies.error_vs_time.report import MARKERS, Way, cheapest, draw
+from scripts.studies.error_vs_time.report import Way, cheapest
 from scripts.studies.error_vs_time.scenes import SCENES
 
 
@@ -256,5 +258,9 @@ def test_every_run_is_written_and_every_scene_drawn(tmp_path: Path) -> None:
         rows = list(csv.DictReader(file))
     assert [int(row["loop_edges"]) for row in rows] == [36, 72]
     assert [float(row["value"]) for row in rows] == [37.0, 73.0]
+    again = read_csv(tmp_path / "runs.csv")
+    assert [replace(run, error=0.0) for run in again] == [
+        replace(run, error=0.0) for run in runs
+    ]
     draw(tmp_path / "runs.png", runs)
     assert imread(tmp_path / "runs.png").std() > 0.05

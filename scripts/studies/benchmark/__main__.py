@@ -18,7 +18,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import backward_differences
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import SOLVERS, Equilibrium, Problem, displaced, solve
-from scripts.studies.benchmark.report import draw, report, summary, write_csv
+from scripts.studies.benchmark.report import draw, read_csv, report, summary, write_csv
 from scripts.studies.common import make_mesh, peak_memory
 
 SIZES = (474, 2000, 7500, 50_000, 200_000)
@@ -66,10 +66,19 @@ def bending_energy(problem: Problem, x_loop: FloatArray) -> float:
 @click.group(invoke_without_command=True)
 @click.option("--sizes", default=",".join(map(str, SIZES)), help="Numbers of vertices.")
 @click.option("--out", default="docs", type=click.Path(path_type=Path, file_okay=False))
+@click.option(
+    "--from",
+    "table",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="Only draw benchmark.png to OUT, from a benchmark.csv; nothing is measured.",
+)
 @click.pass_context
-def main(context: click.Context, sizes: str, out: Path) -> None:
+def main(context: click.Context, sizes: str, out: Path, table: Path | None) -> None:
     """Run all cases and write benchmark.md, benchmark.csv and benchmark.png to OUT."""
     if context.invoked_subcommand is not None:
+        return
+    if table is not None:
+        draw(out / "benchmark.png", read_csv(table))
         return
     cases = []
     alive = set(SOLVERS)

@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from eulerplateau.pictures.figure import PAGE, SMALL, TEXT, frame, new_figure, save
+from eulerplateau.pictures.looks import legend_above, style
 from scripts.studies.common import machine
 
 ERRORS = tuple(10.0**-d for d in (3, 6, 8, 10, 12))
@@ -19,11 +21,12 @@ COLUMNS = (
     *("iterations", "status"),
 )
 
-# Marker, line and its filling by solver.
-LOOKS = {
-    "newton": ("o", "-", None),
-    "cg": ("^", "-.", "white"),
-    "cg-plain": ("s", "--", "white"),
+TASKS = {"cold": "cold start", "warm": "warm start"}
+LOOKS: dict[str, dict[str, Any]] = {
+    name: {**style(number), "markersize": 2.6, "linestyle": line, "linewidth": 0.9}
+    for number, (name, line) in enumerate(
+        {"newton": "-", "cg": "-.", "cg-plain": "--"}.items()
+    )
 }
 
 
@@ -181,35 +184,43 @@ def write_csv(path: Path, cases: list[dict[str, Any]]) -> None:
                     )
 
 
-def draw(path: Path, cases: list[dict[str, Any]]) -> None:
-    """Draw error against run time, one panel a task."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 4.2), layout="constrained")
-    axes = figure.subplots(1, 2, sharey=True)
-    sizes = sorted({case["vertices"] for case in cases})
-    shades = dict(zip(sizes, np.linspace(0.0, 0.7, len(sizes)), strict=True))
-    for ax, task in zip(axes, ("cold", "warm"), strict=True):
-        for case in cases:
-            runs = of_task(case, task)
-            if not runs:
-                continue
-            seconds, errors = np.array(runs[-1]["points"]).T
-            marker, line, fill = LOOKS[case["solver"]]
-            ax.loglog(
-                seconds,
-                np.maximum(errors, 1e-16),
-                marker=marker,
-                markersize=4,
-                markerfacecolor=fill,
-                linestyle=line,
-                color=str(shades[case["vertices"]]),
-                label=f"{case['solver']}, {case['vertices']} vertices",
+def read_csv(path: Path) -> list[dict[str, Any]]:
+    """Return of each case what `draw` needs, from a table that `write_csv` has written."""
+    cases: dict[tuple[str, ...], dict[str, Any]] = {}
+    with path.open(newline="", encoding="ascii") as file:
+        for row in csv.DictReader(file):
+            case = cases.setdefault(
+                (row["vertices"], row["solver"]),
+                {"vertices": int(row["vertices"]), "solver": row["solver"], "runs": {}},
             )
-        ax.set_title(f"{task} start")
-        ax.set_xlabel("run time (s)")
-        ax.grid(visible=True, alpha=0.3)
-    axes[0].set_ylabel("error (energy or lengths, relative)")
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right center", frameon=False, fontsize=8)
-    figure.savefig(path, dpi=160)
+            run = case["runs"].setdefault(
+                (row["task"], row["repeat"]), {"task": row["task"], "points": []}
+            )
+            run["points"].append((float(row["seconds"]), float(row["error"])))
+    return [{**case, "runs": list(case["runs"].values())} for case in cases.values()]
+
+
+def draw(path: Path, cases: list[dict[str, Any]]) -> None:
+    """Draw error against run time, a panel for each task and size; of repeats the last."""
+    from matplotlib.lines import Line2D
+
+    sizes = sorted({case["vertices"] for case in cases})
+    figure = new_figure(PAGE, 3.9)
+    axes = figure.subplots(2, len(sizes), sharex=True, sharey=True, squeeze=False)
+    for line, (task, heading) in zip(axes, TASKS.items(), strict=True):
+        line[0].set_ylabel(f"{heading}\nrelative error")
+        for ax, size in zip(line, sizes, strict=True):
+            for case in cases:
+                runs = of_task(case, task)
+                if case["vertices"] == size and runs:
+                    seconds, errors = np.array(runs[-1]["points"]).T
+                    ax.loglog(seconds, np.maximum(errors, 1e-16), **LOOKS[case["solver"]])
+            frame(ax)
+    for ax, size in zip(axes[0], sizes, strict=True):
+        ax.set_title(f"{size} vertices", fontsize=SMALL)
+    figure.supxlabel(
+        "run time (s); the error is the larger one of energy and lengths", fontsize=TEXT
+    )
+    drawn = sorted({case["solver"] for case in cases}, key=list(LOOKS).index)
+    legend_above(figure, [Line2D([], [], **LOOKS[name], label=name) for name in drawn])
+    save(figure, path)

@@ -24,14 +24,16 @@ from scripts.studies.error_vs_time.ours import (
     solvers,
     write_mesh,
 )
+from scripts.studies.error_vs_time.picture import draw
 from scripts.studies.error_vs_time.points import Place, as_measurement, summarise
 from scripts.studies.error_vs_time.records import (
     COARSE_TO_FINE,
     Measurement,
+    read_csv,
     with_errors,
     write_csv,
 )
-from scripts.studies.error_vs_time.report import draw, markdown
+from scripts.studies.error_vs_time.report import markdown
 from scripts.studies.error_vs_time.scenes import SCENES, Scene
 from scripts.studies.error_vs_time.theirs import measure_evolver
 
@@ -47,12 +49,25 @@ SOLVERS = ("newton", "cg", CONFORMAL, TANGENT_ANGLE)
 @click.option("--scene", "names", multiple=True, type=click.Choice(list(SCENES)))
 @click.option("--solver", "only", multiple=True, help="By default all, and Evolver.")
 @click.option("--out", default="docs", type=click.Path(path_type=Path, file_okay=False))
+@click.option(
+    "--from",
+    "table",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="Only draw error_vs_time.png to OUT, from its .csv; nothing is measured.",
+)
 @click.pass_context
 def main(
-    context: click.Context, names: tuple[str, ...], only: tuple[str, ...], out: Path
+    context: click.Context,
+    names: tuple[str, ...],
+    only: tuple[str, ...],
+    out: Path,
+    table: Path | None,
 ) -> None:
     """Measure all scenes, or those named; write error_vs_time.csv and .png to OUT."""
     if context.invoked_subcommand is not None:
+        return
+    if table is not None:
+        draw(out / "error_vs_time.png", read_csv(table))
         return
     out.mkdir(parents=True, exist_ok=True)
     found: list[Measurement] = []

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, fields, replace
 from itertools import groupby, pairwise
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 from scripts.studies.error_vs_time.arithmetic import richardson
 from scripts.studies.error_vs_time.scenes import SCENES
@@ -176,3 +177,18 @@ def write_csv(path: Path, found: list[Measurement]) -> None:
                 for name, value in asdict(m).items()
             }
             writer.writerow(row | {"value": repr(m.value)})
+
+
+def read_csv(path: Path) -> list[Measurement]:
+    """Return what a table holds that `write_csv` has written, to its six digits."""
+    kinds: dict[Any, Any] = {"int": int, "float": float, "str": str}
+    with path.open(newline="", encoding="ascii") as file:
+        return [
+            Measurement(
+                **{
+                    field.name: kinds[field.type](row[field.name])
+                    for field in fields(Measurement)
+                }
+            )
+            for row in csv.DictReader(file)
+        ]

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import groupby
-from pathlib import Path
-
-import numpy as np
 
 from scripts.studies.common import machine
 from scripts.studies.error_vs_time.arithmetic import (
@@ -31,16 +27,6 @@ EVOLVER = "evolver"
 # Smaller errors are no better.
 ROUNDING = 1e-15
 STATED = (1e-3, 1e-4, 1e-5, 1e-6)
-MARKERS = {
-    "newton": ("o", "black"),
-    "newton, coarse to fine": ("D", "tab:green"),
-    "cg": ("s", "tab:blue"),
-    "conformal": ("*", "tab:purple"),
-    "tangent angle": ("P", "tab:pink"),
-    "evolver": ("^", "tab:orange"),
-    "evolver, coarse to fine": ("v", "tab:red"),
-    "evolver, gradients": ("x", "tab:brown"),
-}
 
 
 def markdown(found: list[Measurement]) -> str:
@@ -80,20 +66,21 @@ def theirs(point: Point) -> bool:
 def time_to(known: Iterable[Point], error: float) -> float | None:
     """Return the CPU seconds to an error on the front of the points given."""
     chosen = list(known)
-    return seconds_to([p.cpu for p in chosen], [_error(p) for p in chosen], error)
+    return seconds_to([p.cpu for p in chosen], [error_of(p) for p in chosen], error)
 
 
 def on_front(known: list[Point]) -> BoolArray:
     """Return (n,): whether a point is on the Pareto front of those given."""
-    return pareto([p.cpu for p in known], [_error(p) for p in known])
+    return pareto([p.cpu for p in known], [error_of(p) for p in known])
 
 
-def _error(point: Point) -> float:
+def error_of(point: Point) -> float:
     """Return the error to three digits: rounding alone must not make one solver better."""
     return float(f"{max(point.first.error, ROUNDING):.2e}")
 
 
-def _scenes(known: list[Point]) -> dict[str, list[Point]]:
+def by_scene(known: list[Point]) -> dict[str, list[Point]]:
+    """Return the points of each scene, by its name."""
     return {
         name: group
         for name in SCENES
@@ -109,7 +96,7 @@ def _times(known: list[Point]) -> list[str]:
         f"| scene | {heads} |",
         f"|---|{'---:|' * len(STATED)}",
     ]
-    for name, group in _scenes(known).items():
+    for name, group in by_scene(known).items():
         lines.append(f"| {name} | {_compared(group)} |")
         if both := extrapolated(group):
             both += [p for p in group if p.first.mesh == HARMONICS]
@@ -163,7 +150,7 @@ def _all_points(known: list[Point]) -> list[str]:
         "least-most | wall s | steps | MiB | |",
         "|---|---|---|" + "---:|" * 9 + "---|",
     ]
-    for name, group in _scenes(known).items():
+    for name, group in by_scene(known).items():
         front = on_front(group)
         for p, best in zip(group, front, strict=True):
             m = p.first
@@ -233,52 +220,3 @@ def _advice(known: list[Point], in_plane: bool) -> str:
 
 def _short(seconds: float | None) -> str:
     return "-" if seconds is None else f"{seconds:.2g}"
-
-
-def draw(path: Path, found: list[Measurement]) -> None:
-    """Draw error against CPU seconds, one panel a scene, its Pareto front in grey."""
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-    from matplotlib.ticker import NullFormatter
-
-    scenes = _scenes(points(found))
-    rows = math.ceil(len(scenes) / 3)
-    figure = Figure(figsize=(12, 3.4 * rows + 0.6), layout="constrained")
-    axes = figure.subplots(rows, 3, squeeze=False)
-    lines: dict[str, Line2D] = {}
-    for ax, (name, group) in zip(axes.flat, scenes.items(), strict=False):
-        seconds = np.array([p.cpu for p in group])
-        errors = np.array([_error(p) for p in group])
-        front = on_front(group)
-        order = np.argsort(seconds[front])
-        ax.loglog(seconds[front][order], errors[front][order], color="0.85", lw=7, zorder=0)
-        for solver, (marker, colour) in MARKERS.items():
-            for kind in ("lattice", "uniform", "graded", "fan", HARMONICS):
-                line = [
-                    p for p in group if (p.first.solver, p.first.mesh) == (solver, kind)
-                ]
-                if not line:
-                    continue
-                (drawn,) = ax.loglog(
-                    [p.cpu for p in line],
-                    [_error(p) for p in line],
-                    marker=marker,
-                    color=colour,
-                    markerfacecolor=colour if kind in ("graded", "fan") else "white",
-                    linestyle="-" if kind in ("graded", "fan") else "--",
-                    markersize=5,
-                )
-                lines.setdefault(f"{solver}, {kind}", drawn)
-        ax.set_title(name, fontsize=10)
-        ax.grid(visible=True, alpha=0.3)
-        ax.xaxis.set_minor_formatter(NullFormatter())
-        ax.yaxis.set_minor_formatter(NullFormatter())
-    for ax in axes.flat[len(scenes) :]:
-        ax.remove()
-    for ax in axes[-1]:
-        ax.set_xlabel("CPU seconds")
-    figure.supylabel("relative error of the energy, or of the threshold", fontsize=11)
-    figure.legend(
-        [*lines.values()], [*lines], loc="outside lower center", ncols=4, fontsize=8
-    )
-    figure.savefig(path, dpi=100)

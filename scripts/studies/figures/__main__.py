@@ -17,7 +17,7 @@ from eulerplateau.pictures.comparison import runs_figure
 from eulerplateau.pictures.figure import save
 from eulerplateau.pictures.planar import plot_energy, plot_gallery
 from eulerplateau.runs import Row, Run, load_run, read_run, run_sweep
-from scripts.studies.common import ROOT, markdown_table
+from scripts.studies.common import ROOT, markdown_table, shrink
 from scripts.studies.figures.cells import (
     draw_geometry,
     draw_phases,
@@ -191,15 +191,6 @@ def changes(run: Run) -> list[tuple[float, float]]:
         for row, after in pairwise(run.first_leg)
         if flat(row) != flat(after)
     ]
-
-
-def shrink(path: Path) -> None:
-    """Write a PNG anew with a palette: a third of the size, for the repository."""
-    from PIL import Image
-
-    with Image.open(path) as image:
-        small = image.convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    small.save(path, optimize=True)
 
 
 def page(labels: dict[str, str], found: dict[str, list[Number]]) -> str:

@@ -31,8 +31,11 @@ from eulerplateau.loop import edges_of
 from eulerplateau.pictures.figure import (
     BLACK,
     BLUE,
+    COLUMN,
     GREEN,
     ORANGE,
+    PAGE,
+    SMALL,
     VERMILION,
     frame,
     new_figure,
@@ -50,33 +53,37 @@ if TYPE_CHECKING:
 SIGMA, K_S = r"$\hat\sigma=\sigma R_0^3/\alpha$", r"$\hat k_s=k_sR_0^3/\alpha$"
 # The cell of fig. geometry, and the polygon drawn beside it.
 LOAD, STIFFNESS, EDGES = 10.0, 50.0, 32
-COLOURS = (BLUE, GREEN, VERMILION)
+# By which curves are told apart, in colour and in grey.
+TAGS: tuple[dict[str, Any], ...] = tuple(
+    {"color": colour, "marker": marker, "markevery": 8, "markersize": 3.2}
+    for colour, marker in ((BLUE, "^"), (GREEN, "s"), (VERMILION, "D"))
+)
+_DASHDOT = (0, (6, 1.5, 1, 1.5))
 # The paper's smooth muscle cells: sigma and alpha / R_0^3, both in nN/um.
 MUSCLE = 1.05, 0.16
 
 
 def draw_geometry(path: Path) -> list[Number]:
     """Draw curvature, angle, perimeter and kappa_0; the paper gives no number."""
-    figure = new_figure(8.4, 6.6)
+    figure = new_figure(PAGE, 5.4)
     axes = figure.subplots(2, 2)
     _along_a_side(axes[0, 0], axes[0, 1])
     stiffness = np.geomspace(1, 1000, 41)
-    for load, colour in zip((10.0, 20.0, 30.0), COLOURS, strict=True):
+    for load, tag in zip((10.0, 20.0, 30.0), TAGS, strict=True):
         cells = [regular_cell(3, load, float(k)) for k in stiffness]
         here = rf"$\hat\sigma={load:g}$"
         ax = axes[1, 0]
-        ax.plot(stiffness, [c.perimeter for c in cells], color=colour, label=here)
-        ax.plot(stiffness, [np.pi * c.width for c in cells], "--", color=colour)
+        ax.plot(stiffness, [c.perimeter for c in cells], **tag, label=here)
+        ax.plot(stiffness, [np.pi * c.width for c in cells], "--", **tag)
         sides = np.array([quartic_side(3, load, float(k)) for k in stiffness])
-        axes[1, 1].plot(
-            stiffness, [c.kappa_adhesion for c in cells], color=colour, label=here
-        )
+        axes[1, 1].plot(stiffness, [c.kappa_adhesion for c in cells], **tag, label=here)
         formula = [parabola_kappa_adhesion(3, float(side), load) for side in sides]
-        axes[1, 1].plot(stiffness, formula, "--", color=colour)
+        axes[1, 1].plot(stiffness, formula, "--", **tag)
         inside = [c for c in cells if c.kappa_mid < 0]
         if inside:
             first = inside[0]
-            ax.plot(first.ks_hat, first.perimeter, "v", color=colour, markersize=6)
+            ax.plot(first.ks_hat, first.perimeter, "v", color=tag["color"], markersize=6)
+    ax.plot([], [], "v", color="0.3", markersize=6, label="inflected from here on")
     _polygons(axes[1, 0], axes[1, 1])
     _label(axes[1, 0], "C", K_S, r"perimeter $L/R_0$", "solid: $L$; dashed: $\\pi w$")
     _label(axes[1, 1], "D", K_S, r"$\kappa_0R_0$", "dashed: formula")
@@ -108,7 +115,11 @@ def _along_a_side(curved: Axes, turned: Axes) -> None:
     side = quartic_side(3, LOAD, STIFFNESS)
     s = np.linspace(0, side, 201)
     end = parabola_kappa_adhesion(3, side, LOAD)
-    drawn: dict[str, Any] = {"color": VERMILION, "linestyle": "--", "label": "paper's"}
+    drawn: dict[str, Any] = {
+        "color": VERMILION,
+        "linestyle": "--",
+        "label": "the paper's formula",
+    }
     curved.plot(s, parabola(s, side, LOAD, end), **drawn)
     theta = end * s + 0.25 * LOAD * s**2 * (s / 3 - side / 2) - np.pi / 3
     turned.plot(s, theta, **drawn)
@@ -123,11 +134,13 @@ def _polygons(lengths: Axes, curvatures: Axes) -> None:
         found = solve_cell(Cell(regular_sites(3), EDGES), LOAD, float(k))
         lengths.plot(k, found.perimeter, "o", **marks)
         curvatures.plot(k, found.kappa_adhesion.mean(), "o", **marks)
+    for ax in (lengths, curvatures):
+        ax.plot([], [], "o", **marks, label="polygon")
 
 
 def draw_traction(path: Path) -> list[Number]:
     """Draw tractions, the branches in sigma_hat, and the lines that bound them."""
-    figure = new_figure(8.4, 6.6)
+    figure = new_figure(PAGE, 5.4)
     axes = figure.subplots(2, 2)
     _over_stiffness(axes[0, 0])
     _over_load(axes[0, 1])
@@ -139,22 +152,20 @@ def draw_traction(path: Path) -> list[Number]:
 
 def _over_stiffness(ax: Axes) -> None:
     stiffness = np.geomspace(1, 1000, 41)
-    for load, colour in zip((5.0, 10.0, 20.0), COLOURS, strict=True):
+    for load, tag in zip((5.0, 10.0, 20.0), TAGS, strict=True):
         exact = [regular_cell(3, load, float(k)).traction for k in stiffness]
-        ax.plot(stiffness, exact, color=colour, label=rf"$\hat\sigma={load:g}$")
-        ax.plot(
-            stiffness, [_quartic(load, float(k)) for k in stiffness], "--", color=colour
-        )
+        ax.plot(stiffness, exact, **tag, label=rf"$\hat\sigma={load:g}$")
+        ax.plot(stiffness, [_quartic(load, float(k)) for k in stiffness], "--", **tag)
     ax.set_xscale("log")
     _label(ax, "A", K_S, r"$TR_0^2/\alpha$", "dashed: $T=\\sigma\\ell$, quartic")
 
 
 def _over_load(ax: Axes) -> None:
     loads = np.geomspace(0.1, 300, 41)
-    for k, colour in zip((10.0, 30.0, 60.0), COLOURS, strict=True):
+    for k, tag in zip((10.0, 30.0, 60.0), TAGS, strict=True):
         exact = [regular_cell(3, float(load), k).traction for load in loads]
-        ax.plot(loads, exact, color=colour, label=rf"$\hat k_s={k:g}$")
-        ax.plot(loads, [_quartic(float(load), k) for load in loads], "--", color=colour)
+        ax.plot(loads, exact, **tag, label=rf"$\hat k_s={k:g}$")
+        ax.plot(loads, [_quartic(float(load), k) for load in loads], "--", **tag)
     ax.axhline(0.0, color="0.7", linewidth=0.8)
     ax.set_xscale("log")
     _label(ax, "B", SIGMA, r"$TR_0^2/\alpha$", "dashed: $T=\\sigma\\ell$, quartic")
@@ -165,7 +176,7 @@ def _quartic(load: float, k: float) -> float:
 
 
 def _branches(ax: Axes) -> None:
-    for k, colour in ((100.0, BLUE), (120.0, VERMILION)):
+    for k, colour, mark in ((100.0, BLUE, "o"), (120.0, VERMILION, "s")):
         low, high = (fold.sigma_hat for fold in folds(3, k))
         near = np.linspace(0, 1, 15) ** 2
         below = low - (low - 2) * near[::-1]
@@ -181,14 +192,16 @@ def _branches(ax: Axes) -> None:
             _curve(ax, loads, stable, color=colour, linewidth=1.8, label=name)
         for ends in ((40.0, low), (high, 5000.0)):
             lost = lost_at_stiffness(k, *ends)
-            ax.plot(lost.sigma_hat, lost.cell.perimeter, "o", color=colour, markersize=5)
+            place = lost.sigma_hat, lost.cell.perimeter
+            ax.plot(*place, mark, color=colour, markersize=4.5)
+        ax.plot([], [], mark, color=colour, markersize=4.5, label="its symmetry lost")
     loads = np.geomspace(star(3).sigma_p, 500, 60)
     lengths = [_star_perimeter(float(load)) for load in loads]
     ax.plot(
         loads, lengths, color="0.5", linestyle="--", label="star, its tips free of cost"
     )
     ax.set_xscale("log")
-    _label(ax, "C", SIGMA, r"perimeter $L/R_0$", "dotted: unstable; dots: symmetry lost")
+    _label(ax, "C", SIGMA, r"perimeter $L/R_0$", "dotted: unstable")
 
 
 def _curve(
@@ -212,7 +225,7 @@ def _lines(ax: Axes) -> None:
     )
     lost = [symmetry_lost(3, float(load)) for load in loads]
     stiff = [np.nan if point is None else point.ks_hat for point in lost]
-    ax.plot(stiff, loads, color=ORANGE, label="symmetry lost")
+    ax.plot(stiff, loads, color=ORANGE, linestyle=_DASHDOT, label="symmetry lost")
     folded = fold_line(3, 80)
     ax.plot(
         [p.ks_hat for p in folded],
@@ -221,7 +234,8 @@ def _lines(ax: Axes) -> None:
         label="fold",
     )
     meeting = reconnection(3)
-    ax.plot(meeting.ks_hat, meeting.sigma_hat, "o", color=BLACK, markerfacecolor="white")
+    place = meeting.ks_hat, meeting.sigma_hat
+    ax.plot(*place, "o", color=BLACK, markerfacecolor="white", label="softest folded")
     ax.axhline(star(3).sigma_p, color="0.4", linestyle=":", label=r"$\sigma_p$")
     ax.set(xscale="log", yscale="log", xlim=(50, 1000), ylim=(3, 1000))
     ax.set_xticks([50, 100, 200, 500, 1000], ["50", "100", "200", "500", "1000"])
@@ -242,14 +256,15 @@ def draw_spreading(path: Path) -> list[Number]:
     """Draw the radius over the stiffness with the paper's parameters, without data."""
     sigma, alpha = MUSCLE
     stiffness = np.geomspace(0.01, 1000, 200)
-    figure = new_figure(5.2, 4.0)
+    figure = new_figure(COLUMN, 2.8)
     ax = figure.subplots()
     exact = cell_radius(stiffness, sigma, alpha, 1.0)
     ax.plot(stiffness, exact, color=BLACK, label="root of the cubic")
     near = interpolated_radius(stiffness, sigma, alpha, 1.0)
     ax.plot(stiffness, near, "--", color=VERMILION, label="interpolation formula")
-    ax.axhline((alpha / sigma) ** (1 / 3), color="0.6", linewidth=0.8, linestyle=":")
-    ax.axhline(1.0, color="0.6", linewidth=0.8, linestyle=":")
+    soft = (alpha / sigma) ** (1 / 3)
+    for limit, label in ((soft, "soft and stiff limits"), (1.0, None)):
+        ax.axhline(limit, color="0.6", linewidth=0.8, linestyle=":", label=label)
     ax.set_xscale("log")
     what = r"$\sigma=1.05$, $\alpha/R_0^3=0.16$ nN/$\mu$m; no measurements"
     _label(ax, "", r"$k_s$ (nN/$\mu$m)", "$R/R_0$", what)
@@ -260,5 +275,5 @@ def draw_spreading(path: Path) -> list[Number]:
 def _label(ax: Axes, letter: str, x: str, y: str, note: str) -> None:
     frame(ax)
     ax.set(xlabel=x, ylabel=y)
-    ax.set_title("  ".join(filter(None, (letter, note))), loc="left", fontsize=9)
-    ax.legend(frameon=False, fontsize=8)
+    ax.set_title("  ".join(filter(None, (letter, note))), loc="left", fontsize=SMALL)
+    ax.legend(frameon=False, fontsize=SMALL)

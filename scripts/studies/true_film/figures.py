@@ -2,26 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.conformal import ConformalFilm, flat_eight, surface
 from eulerplateau.exact.planar import planar_film
-from eulerplateau.pictures.figure import BLACK, BLUE, GREEN, ORANGE, VERMILION, frame, save
+from eulerplateau.mesh import Shape
+from eulerplateau.pictures.figure import (
+    BLACK,
+    BLUE,
+    GREEN,
+    PAGE,
+    SMALL,
+    TEXT,
+    VERMILION,
+    frame,
+    new_figure,
+    save,
+    scale_bar,
+    write_below,
+)
+from eulerplateau.pictures.vector_film import draw_film
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
 _LOAD = r"$\hat\sigma=\sigma L^3/\alpha$"
 _COLOURS = {"two-lobed": BLUE, "twisted": VERMILION, "saddle": GREEN}
 _RADII, _ANGLES = 24, 192
-# Degrees from which films are seen, the direction to there, and how far along it (in L) a
-# loop is drawn in front of its film.
-_ELEVATION, _AZIMUTH, _NEARER = 28.0, -62.0, 0.025
+# Degrees from which films are seen, and the direction to there.
+_ELEVATION, _AZIMUTH = 28.0, -62.0
 _TO_EYE = np.array(
     [
         np.cos(np.radians(_ELEVATION)) * np.cos(np.radians(_AZIMUTH)),
@@ -29,6 +44,19 @@ _TO_EYE = np.array(
         np.sin(np.radians(_ELEVATION)),
     ]
 )
+# A field's height over its width, and a bar in units of L.
+_HEIGHT, _BAR = 0.6, 0.1
+# How far along the way to the eye (in L) a loop is drawn in front of its film.
+_NEARER = 0.04
+_DASHDOT = (0, (6, 1.5, 1, 1.5))
+_HELD: dict[str, dict[str, Any]] = {
+    "twisted": {"color": VERMILION, "linewidth": 1.4},
+    "planar": {"color": BLUE, "linestyle": _DASHDOT, "linewidth": 0.9},
+    "on to the eight": {"color": "0.4", "linestyle": ":", "linewidth": 0.9},
+    "planar, not held": {
+        "color": BLUE, "linestyle": "none", "marker": "o", "ms": 4, "mfc": "none"
+    },
+}  # fmt: skip
 # Films in the gallery: branch and load.
 _SHOWN = (
     ("two-lobed", 1800.0),
@@ -60,9 +88,7 @@ def draw_all(
 
 def draw_branches(path: Path, rows: Any, onset: float) -> None:
     """Draw the energies over the load, less the flat eight's or the disk's."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(10, 4.6), layout="constrained")
+    figure = new_figure(PAGE, 3.3)
     left, right = figure.subplots(1, 2)
     loads = np.linspace(700, 2100, 141)
     eight = np.array([flat_eight(load).energy for load in loads])
@@ -75,7 +101,7 @@ def draw_branches(path: Path, rows: Any, onset: float) -> None:
     x = [onset, *(r.sigma_hat for r in twisted)]
     y = [planar_film(2, onset).energy - flat_eight(onset).energy]
     y += [r.energy - flat_eight(r.sigma_hat).energy for r in twisted]
-    left.plot(x, y, "--", color=VERMILION, label="twisted (index 1)")
+    left.plot(x, y, linestyle=_DASHDOT, color=VERMILION, label="twisted (index 1)")
     left.axhline(0, color=BLACK, label="flat eight, pinched (stable)")
     left.set(
         xlabel=_LOAD, ylabel=r"$(E-E_8)\,/\,(\alpha/L)$", ylim=(-9, 9), xlim=(700, 2100)
@@ -88,25 +114,23 @@ def draw_branches(path: Path, rows: Any, onset: float) -> None:
     right.plot(
         x2,
         [r.energy for r in saddles] - base,
-        "--",
+        linestyle=_DASHDOT,
         color=GREEN,
         label="saddle (index 2, then 4)",
     )
     two = [planar_film(2, s).energy - s / (4 * pi) - 4 * pi**2 for s in wide]
     right.plot(wide, two, color=BLUE, ls="--", label="two lobes, planar")
-    right.axvline(96 * pi**3, color="0.8", lw=0.8, zorder=0)
+    right.axvline(96 * pi**3, color="0.8", lw=0.8, zorder=0, label=r"$96\,\pi^3$")
     right.set(xlabel=_LOAD, ylabel=r"$(E-E_{\rm disk})\,/\,(\alpha/L)$")
     for ax in (left, right):
         frame(ax)
-        ax.legend(frameon=False, fontsize=8)
+        ax.legend(frameon=False, fontsize=SMALL)
     save(figure, path)
 
 
 def draw_waist(path: Path, rows: Any, onset: float, held: Any) -> None:
     """Draw the waist over the load, and energies over the waist at fixed loads."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(10, 4.6), layout="constrained")
+    figure = new_figure(PAGE, 3.3)
     left, right = figure.subplots(1, 2)
     loads = np.linspace(48 * pi**3 + 1e-6, 2100, 60)
     widths = np.array([2 * planar_film(2, s).positions(0.25)[1] for s in loads])
@@ -114,86 +138,105 @@ def draw_waist(path: Path, rows: Any, onset: float, held: Any) -> None:
     twisted = [r for r in rows if r.branch == "twisted"]
     x = [onset, *(r.sigma_hat for r in twisted)]
     y = [2 * float(planar_film(2, onset).positions(0.25)[1]), *(r.waist for r in twisted)]
-    left.plot(x, y, "--", color=VERMILION, label="twisted (index 1)")
+    left.plot(x, y, linestyle=_DASHDOT, color=VERMILION, label="twisted (index 1)")
     left.set(xlabel=_LOAD, ylabel=r"waist $w/L$", yscale="log", xlim=(680, 2110))
-    colours = [BLACK, BLUE, GREEN, ORANGE, VERMILION, "0.5"]
-    for land, colour in zip(held, colours, strict=True):
-        zero = flat_eight(land.load).energy
-        energies = np.array(land.energies) - zero
-        right.plot(land.waists, energies, color=colour, label=f"{land.load:.0f}")
-        right.plot([0, land.waists[0]], [0, energies[0]], ":", color=colour, lw=0.9)
-        planar = np.array(land.planar_energies) - zero
-        right.plot(land.planar_waists, planar, "-.", color=colour, lw=0.9)
-        right.plot(land.planar_waists[0], planar[0], "o", color=colour, ms=5, mfc="none")
-    right.plot(0, 0, "s", color=BLACK, ms=5)
+    for land in held:
+        _draw_held(right, land)
+    right.plot(0, 0, "s", color=BLACK, ms=4)
     right.set(
-        xlabel=r"waist $w/L$, held", ylabel=r"$(E-E_8)\,/\,(\alpha/L)$", xlim=(-0.005, 0.33)
+        xlabel=r"waist $w/L$, held", ylabel=r"$(E-E_8)\,/\,(\alpha/L)$", xlim=(-0.008, 0.41)
     )
-    right.set(ylim=(-15, 10))
-    right.legend(frameon=False, fontsize=8, title=_LOAD, ncols=2)
-    left.legend(frameon=False, fontsize=8)
-    frame(left)
-    frame(right)
+    right.set(ylim=(-15, 11))
+    for ax in (left, right):
+        frame(ax)
+    left.legend(frameon=False, fontsize=SMALL)
+    right.legend(handles=_held_handles(), frameon=False, fontsize=SMALL, loc="lower left")
     save(figure, path)
+
+
+def _draw_held(ax: Axes, land: Any) -> None:
+    """Draw the energies of films at one load over the waists at which they are held."""
+    zero = flat_eight(land.load).energy
+    energies, planar = (
+        np.array(values) - zero for values in (land.energies, land.planar_energies)
+    )
+    ax.plot(land.waists, energies, **_HELD["twisted"])
+    ax.plot([0, land.waists[0]], [0, energies[0]], **_HELD["on to the eight"])
+    ax.plot(land.planar_waists, planar, **_HELD["planar"])
+    ax.plot(land.planar_waists[0], planar[0], **_HELD["planar, not held"])
+    ax.annotate(
+        rf"$\hat\sigma={land.load:.0f}$",
+        (land.planar_waists[0], planar[0]),
+        xytext=(4, 3),
+        textcoords="offset points",
+        fontsize=SMALL,
+    )
+
+
+def _held_handles() -> list[Artist]:
+    from matplotlib.lines import Line2D
+
+    eight = Line2D([], [], marker="s", linestyle="none", color=BLACK, ms=4)
+    eight.set_label("flat eight")
+    return [*(Line2D([], [], **look, label=name) for name, look in _HELD.items()), eight]
 
 
 def draw_shapes(path: Path, films: dict[str, list[ConformalFilm]]) -> None:
     """Draw films in space, all at one scale."""
-    from matplotlib.figure import Figure
+    chosen = [
+        (name, min(films[name], key=lambda film: abs(film.load - load)))
+        for name, load in _SHOWN
+    ]
+    draw_films(
+        path,
+        {rf"{name}, $\hat\sigma={film.load:.0f}$": film for name, film in chosen},
+        lines=2,
+    )
 
-    figure = Figure(figsize=(10, 5), layout="constrained")
-    for number, (branch, load) in enumerate(_SHOWN, start=1):
-        film = min(films[branch], key=lambda f: abs(f.load - load))
-        ax: Any = figure.add_subplot(2, 3, number, projection="3d")
-        draw_surface(ax, film)
-        ax.set_title(rf"{branch}, $\hat\sigma={film.load:.0f}$", fontsize=10)
+
+def draw_films(path: Path, films: Mapping[str, ConformalFilm], lines: int) -> None:
+    """Draw films by their titles, from one side at one scale, in so many lines."""
+    shapes = [triangulated(film) for film in films.values()]
+    seen = [shape.x - shape.x.mean(axis=0) for shape in shapes]
+    half = 1.06 * max(float(np.linalg.norm(x, axis=1).max()) for x in seen)
+    size = half, _HEIGHT * half
+    columns = -(-len(shapes) // lines)
+    width = PAGE / columns
+    figure = new_figure(PAGE, lines * (_HEIGHT * width + 0.3) + 0.3)
+    axes = figure.subplots(lines, columns, squeeze=False)
+    for ax, title, shape, x in zip(axes.flat, films, shapes, seen, strict=True):
+        draw_film(ax, _loop_in_front(shape.moved(x)), _TO_EYE, size)
+        ax.set_title(title, fontsize=TEXT)
+    scale_bar(axes[0, 0], _BAR)
+    note = f"seen from {_ELEVATION:.0f}° above the plane of flat films; bar: {_BAR:g} L"
+    write_below(figure, note)
     save(figure, path)
 
 
-def draw_surface(ax: Any, film: ConformalFilm) -> None:
-    """Draw a film in space, its loop in front of it, at the scale of all of them."""
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+def _loop_in_front(shape: Shape) -> Shape:
+    """Return a shape whose loop is a little nearer to the eye than the film it bounds."""
+    count, nearer = len(shape.x), shape.x_loop + _NEARER * _TO_EYE
+    loop = np.arange(count, count + len(nearer))
+    return Shape(np.concatenate([shape.x, nearer]), shape.triangles, loop)
 
+
+def triangulated(film: ConformalFilm) -> Shape:
+    """Return a film as triangles, fine enough to be drawn: rings about its centre."""
     whole = surface(film)
-    radii = np.linspace(1e-3, 1, _RADII)
     points = whole.points
-    rings = np.stack([whole.at(float(r), points) for r in radii])
     # Even steps of the loop's own parameter: the film's ends are crowded in theta.
-    phi = 2 * pi * np.arange(_ANGLES + 1) / _ANGLES
+    phi = 2 * pi * np.arange(_ANGLES) / _ANGLES
     theta = film.basis.grading.theta(phi) % (2 * pi)
     index = np.round(theta / (2 * pi) * points).astype(int) % points
-    grid = rings[:, index]
-    corners = [grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]]
-    quads = np.stack(corners, axis=2).reshape(-1, 4, 3)
-    colours = _shaded(quads)
-    # The loop's pieces are polygons too, so that all are drawn in the order of their depth;
-    # a little nearer to the eye than the film they bound.
-    loop = grid[-1] + _NEARER * _TO_EYE
-    pieces = np.stack([loop[:-1], loop[1:], loop[1:], loop[:-1]], axis=1)
-    black = np.tile([0.0, 0.0, 0.0, 1.0], (len(pieces), 1))
-    ax.add_collection3d(
-        Poly3DCollection(
-            np.concatenate([quads, pieces]),
-            facecolors=np.concatenate([colours, black]),
-            edgecolors=np.concatenate([colours, black]),
-            linewidths=1.0,  # one for all: matplotlib sorts colours by depth, not widths
-        )
-    )
-    half = 0.215
-    ax.set(xlim=(-half, half), ylim=(-half, half), zlim=(-half / 2, half / 2))
-    ax.set_box_aspect((2, 2, 1), zoom=1.45)
-    ax.view_init(elev=_ELEVATION, azim=_AZIMUTH)
-    ax.set_axis_off()
-
-
-def _shaded(quads: FloatArray) -> FloatArray:
-    """Return the colours (n, 4) of quadrilaterals (n, 4, 3), lighter towards the light."""
-    normals = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
-    light = np.array([0.3, -0.5, 0.8]) / np.sqrt(0.98)
-    brightness = 0.55 + 0.45 * np.abs(normals @ light)
-    shade = np.array([0.749, 0.851, 0.933])
-    return np.column_stack([brightness[:, None] * shade, np.ones(len(quads))])
+    rings = [whole.at(float(r), points)[index] for r in np.linspace(0, 1, _RADII + 1)[1:]]
+    centre = whole.at(0.0, points)[:1]
+    place = np.arange(_RADII * _ANGLES).reshape(_RADII, _ANGLES) + 1
+    after = np.roll(place, -1, axis=1)
+    fan = np.stack([np.zeros(_ANGLES, dtype=int), place[0], after[0]], axis=1)
+    inner = np.stack([place[:-1], place[1:], after[1:]], axis=-1)
+    outer = np.stack([place[:-1], after[1:], after[:-1]], axis=-1)
+    triangles = np.concatenate([fan, inner.reshape(-1, 3), outer.reshape(-1, 3)])
+    return Shape(np.concatenate([centre, *rings]), triangles, place[-1])
 
 
 def _split(
@@ -203,4 +246,4 @@ def _split(
     stable = x <= onset if below else x >= onset
     ax.plot(x[stable], y[stable], color=colour, label=f"{label} (stable)")
     ax.plot(x[~stable], y[~stable], "--", color=colour, label=f"{label} (unstable)")
-    ax.plot(onset, np.interp(onset, x, y), "o", color=colour, ms=5)
+    ax.plot(onset, np.interp(onset, x, y), "o", color=colour, ms=4)

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import astuple, fields
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import click
 from threadpoolctl import threadpool_limits
@@ -58,15 +59,25 @@ KEPT_FLAT = (1900.0, 2000.0, 2100.0)
 
 @click.command()
 @click.option("--out", type=click.Path(path_type=Path), default=ROOT / "docs")
-def main(out: Path) -> None:
+@click.option(
+    "--from",
+    "table",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="Only draw the pictures, from a welded_loop.csv.",
+)
+def main(out: Path, table: Path | None) -> None:
     """Print the tables as Markdown; write welded_loop.csv, .json and the pictures."""
+    if table is not None:
+        with threadpool_limits(1):
+            _draw(out / "pictures" / "welded-loop", _read(table))
+        return
     out.mkdir(parents=True, exist_ok=True)
     with processes() as pool:
         curves = dict(zip(LOADS, pool.map(rows_at, LOADS), strict=True))
         ends = list(pool.map(run, cases(), chunksize=5))
     with threadpool_limits(1):
-        for head, table in _tables(curves):
-            click.echo(f"{head}\n\n{table}")
+        for head, text in _tables(curves):
+            click.echo(f"{head}\n\n{text}")
         click.echo(f"Random starts\n\n{markdown_table(tabulated(ends, curves), 1)}")
         numbers = _numbers()
     click.echo(json.dumps(numbers, indent=2))
@@ -182,6 +193,21 @@ def _numbers() -> dict[str, float]:
         ),
         "disk_supercritical_above_load_isotropic_1": disk_turns_supercritical(ISOTROPIC[1]),
     }
+
+
+def _read(table: Path) -> dict[float, list[Row]]:
+    """Return the curves of a stored welded_loop.csv, by their loads."""
+    kinds: dict[Any, Any] = {
+        "int": int,
+        "float": float,
+        "int | None": lambda text: int(text) if text else None,
+    }
+    curves: dict[float, list[Row]] = {}
+    with table.open(newline="") as file:
+        for line in csv.DictReader(file):
+            row = Row(**{f.name: kinds[f.type](line[f.name]) for f in fields(Row)})
+            curves.setdefault(row.load, []).append(row)
+    return curves
 
 
 def _draw(folder: Path, curves: dict[float, list[Row]]) -> None:

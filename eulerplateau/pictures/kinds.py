@@ -26,7 +26,8 @@ class Stage:
     settled : of curves with their shapes (n, n_v, 3) on one loop, the shapes turned to
         follow each other, for animations
     aligned : shapes turned to lie alike, for prints
-    view : from where shapes are seen
+    view, views : from where shapes are seen together, and each by itself at one scale
+    bar : how long a scale bar is, in lengths of a loop, and what it is called
     colour : str, what renders colour by if nothing is said
     fields : how fields are shown, by name
     """
@@ -38,6 +39,8 @@ class Stage:
     ]
     aligned: Callable[[Sequence[Shape]], Sequence[Shape]]
     view: Callable[[Sequence[Shape]], View]
+    views: Callable[[Sequence[Shape]], Sequence[View]]
+    bar: tuple[float, str]
     colour: str
     fields: Mapping[str, FieldLook]
 

@@ -14,7 +14,7 @@ _CONTACT = 1e-13
 
 
 def self_intersections(x: FloatArray, triangles: IntArray) -> int:
-    """Return how many pairs of triangles cross one another, as `crossing_pairs` has them."""
+    """Return how many pairs of triangles cross one another (`crossing_pairs`)."""
     return len(crossing_pairs(x, triangles))
 
 

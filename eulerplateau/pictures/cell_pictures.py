@@ -97,6 +97,7 @@ CELL = KindPictures(
         aligned=lambda shapes: shapes,
         view=_from_above,
         views=_all_from_above,
+        length="R₀",
         bar=(1.0 / _SIZE, "$R_0$"),
         colour="kappa",
         fields={"kappa": FieldLook(r"$\kappa R_0$", signed=True)},

@@ -160,7 +160,7 @@ def _note(shapes: Sequence[Shape], views: Sequence[View]) -> str:
     low, high = min(heights), max(heights)
     others = f"{low}°" if low == high else f"{low}° to {high}°"
     flat = len(shapes) > sum(not is_flat(shape) for shape in shapes)
-    which = "flat films are seen from above, others" if flat else "seen from"
+    which = "flat films are seen from above, others from" if flat else "seen from"
     return f"{which} {others} above their planes; bar: $L/10$"
 
 
@@ -179,6 +179,7 @@ FILM = KindPictures(
     band="not planar",
     branches=_branches,
     plots=_PLOTS,
+    errors=FLAT_ERRORS,
     needs={"contact": "contact_force"},
     has_onset=True,
     numbered=lambda row: float(row.abs_kappa_n),
@@ -192,6 +193,7 @@ FILM = KindPictures(
         aligned=aligned,
         view=common_view,
         views=own_views,
+        length="L",
         bar=(_BAR, "$L/10$"),
         colour="sides",
         fields=_FIELDS,

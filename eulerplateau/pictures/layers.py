@@ -86,7 +86,10 @@ def overlaps(corners: FloatArray) -> IntArray:
         [_with_middle(first), _with_middle(second), _edges_meet(first, second)], axis=1
     )
     tolerance = _ROUNDING * extent
-    common = _inside(points[:, :4], second, tolerance), _inside(points[:, 4:8], first, tolerance)
+    common = (
+        _inside(points[:, :4], second, tolerance),
+        _inside(points[:, 4:8], first, tolerance),
+    )
     use = np.concatenate([*common, np.isfinite(points[:, 8:, 0])], axis=1)
     met = use.any(axis=1)
     pairs, first, second, use = pairs[met], first[met], second[met], use[met]
@@ -97,7 +100,7 @@ def overlaps(corners: FloatArray) -> IntArray:
 
 
 def _cut(polygon: FloatArray, face: FloatArray) -> list[FloatArray]:
-    """Return the parts of a convex polygon (k, 3) on the two sides of a triangle's plane."""
+    """Return a convex polygon (k, 3) cut by a triangle's plane, in two if it crosses it."""
     normal = np.cross(face[1] - face[0], face[2] - face[0])
     height = (polygon - face[0]) @ (normal / np.linalg.norm(normal))
     height[np.abs(height) <= _ROUNDING * np.ptp(polygon, axis=0).max()] = 0.0
@@ -123,13 +126,15 @@ def _fan(polygon: FloatArray) -> FloatArray:
 
 
 def _boxes_meet(flat: FloatArray, solid: BoolArray) -> IntArray:
-    """Return the pairs (m, 2) of triangles (n, 3, 2), of those `solid`, whose boxes meet."""
+    """Return the pairs (m, 2) of `solid` triangles (n, 3, 2) whose boxes meet."""
     low, high = flat.min(axis=1), flat.max(axis=1)
     order = np.flatnonzero(solid)[np.argsort(low[solid, 0], kind="stable")]
     ends = np.searchsorted(low[order, 0], high[order, 0])
     counts = np.maximum(ends - np.arange(len(order)) - 1, 0)
     first = np.repeat(np.arange(len(order)), counts)
-    second = first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
+    second = (
+        first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
+    )
     one, other = order[first], order[second]
     meet = (low[one, 1] < high[other, 1]) & (low[other, 1] < high[one, 1])
     return np.stack([one, other], axis=1)[meet]

@@ -31,9 +31,7 @@ _DARKEST = 0.72
 
 def room(shapes: Sequence[Shape], eyes: Sequence[FloatArray]) -> tuple[float, float]:
     """Return half the width and height that hold every shape about its loop's centre."""
-    seen = [
-        _project(shape.x, eye)[:, :2] for shape, eye in zip(shapes, eyes, strict=True)
-    ]
+    seen = [_project(shape.x, eye)[:, :2] for shape, eye in zip(shapes, eyes, strict=True)]
     half = 1.06 * np.abs(np.concatenate(seen)).max(axis=0)
     return float(half[0]), float(half[1])
 
@@ -80,13 +78,13 @@ def _what_hides(
     numbers = np.concatenate([np.arange(n), np.tile(n + np.arange(m), 2)])
     seen = numbers[overlaps(np.concatenate([corners, _tube(ends)]))]
     seen = seen[(seen < n).any(axis=1)]
-    over = _rim(shape, parents) + [0, n]
+    over = _rim(shape, parents) + np.array([0, n])
     keys = [np.sort(pairs, axis=1) @ [n + m, 1] for pairs in (seen, over)]
     return np.concatenate([seen[~np.isin(*keys)], over])
 
 
 def _rim(shape: Shape, parents: IntArray) -> IntArray:
-    """Return pairs (m, 2) of a part of the film and a stretch of the loop that ends at it."""
+    """Return pairs (m, 2) of a part of the film and a stretch of the loop beside it."""
     n_b = len(shape.loop)
     place = np.full(len(shape.x), -1)
     place[shape.loop] = np.arange(n_b)
@@ -94,7 +92,9 @@ def _rim(shape: Shape, parents: IntArray) -> IntArray:
     after = place[shape.triangles][parents][part, corner]
     edges = np.stack([after, after - 1], axis=1) % n_b
     stretches = edges[..., None] * _STRETCHES + np.arange(_STRETCHES)
-    return np.stack(np.broadcast_arrays(part[:, None, None], stretches), axis=-1).reshape(-1, 2)
+    return np.stack(np.broadcast_arrays(part[:, None, None], stretches), axis=-1).reshape(
+        -1, 2
+    )
 
 
 def _stretches(x_loop: FloatArray) -> FloatArray:

@@ -18,6 +18,7 @@ from .view import (
     View as View,
     common_view as common_view,
     is_flat as is_flat,
+    mean_normal as mean_normal,
     own_views as own_views,
     turning_views as turning_views,
     view_from as view_from,

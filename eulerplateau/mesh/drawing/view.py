@@ -46,19 +46,25 @@ class View:
 
     def height(self, shape: Shape) -> int:
         """Return how high above the mean plane of a shape's loop the eye is, in degrees."""
-        x = shape.x_loop - shape.x_loop.mean(axis=0)
-        normal = np.linalg.svd(x, full_matrices=False)[2][2]
-        return round(float(np.degrees(np.arcsin(min(1.0, abs(self.eye @ normal))))))
+        sine = min(1.0, abs(float(self.eye @ mean_normal(shape.x_loop))))
+        return round(float(np.degrees(np.arcsin(sine))))
 
     def words(self, shape: Shape) -> str:
         """Say from where a shape is seen."""
         height = self.height(shape)
-        return "seen from above" if height == 90 else f"seen {height}° above its plane"
+        return "seen from above" if height == 90 else f"{height}° above its plane"
 
     def size(self, width: int) -> tuple[int, int]:
         """Return width and height of its picture in pixels; both are even, for films."""
         across, up = self.half
         return width, 2 * round(0.5 * width * up / across)
+
+
+def mean_normal(x_loop: FloatArray) -> FloatArray:
+    """Return the unit normal (3,) of the plane nearest to a loop (n_b, 3), either one."""
+    x = x_loop - x_loop.mean(axis=0)
+    normal: FloatArray = np.linalg.svd(x, full_matrices=False)[2][2]
+    return normal
 
 
 def is_flat(shape: Shape) -> bool:
@@ -82,9 +88,7 @@ def own_views(shapes: Sequence[Shape]) -> list[View]:
     So it has its true outline. All others have the eye of their common view.
     """
     eye = _common_eye([shape for shape in shapes if not is_flat(shape)])
-    views = [
-        _holding([shape], ABOVE if is_flat(shape) else eye) for shape in shapes
-    ]
+    views = [_holding([shape], ABOVE if is_flat(shape) else eye) for shape in shapes]
     half = _proportioned(*np.max([view.half for view in views], axis=0))
     return [replace(view, half=half) for view in views]
 
@@ -133,7 +137,9 @@ def _holding(shapes: Sequence[Shape], eye: FloatArray) -> View:
     low, high = flat.min(axis=0), flat.max(axis=0)
     across, up = 0.5 * (high - low) + LOOP_RADIUS
     margin = _MARGIN * max(across, up)
-    return View(eye, axes @ (0.5 * (low + high)), _proportioned(across + margin, up + margin))
+    return View(
+        eye, axes @ (0.5 * (low + high)), _proportioned(across + margin, up + margin)
+    )
 
 
 def _proportioned(across: float, up: float) -> tuple[float, float]:

@@ -1,4 +1,7 @@
-"""The child that renders: `python -m eulerplateau.pictures.render DIR KIND FORMAT COLOUR STEP`."""
+"""The child that renders, started by `draw_shapes`.
+
+Its arguments are `DIR KIND FORMAT COLOUR STEP...`.
+"""
 
 from __future__ import annotations
 

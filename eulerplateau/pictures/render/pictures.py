@@ -113,7 +113,7 @@ class RunPictures:
                 self._write(f"turn_{self._step(place):04d}", form, content)
 
     def sweep(self, form: str = GIF) -> None:
-        """Draw sweep.gif, or .mp4: the shapes in sequence, held where a branch or leg ends."""
+        """Draw sweep.gif, or .mp4: the shapes in sequence, held where a curve ends."""
         view = self.stage.view(self.shapes)
         ends = {series.last for series in self.run.series} | {self.places[-1]}
         with Scene(_FRAME_WIDTH, view) as scene:

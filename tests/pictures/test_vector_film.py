@@ -41,7 +41,7 @@ def area(corners: FloatArray) -> float:
 
 @pytest.mark.parametrize("tilt", [0.1, 1.0])
 def test_what_is_painted_last_is_the_upper_sheet_up_to_the_line(tilt: float) -> None:
-    """To the right of x = 0 the rising sheet, to the left the other, and nothing between."""
+    """To the right of x = 0 the rising sheet, to the left the other."""
     x, triangles = crossing_sheets(tilt)
     corners, parents = cut_where_crossing(x, triangles)
     assert area(corners) == pytest.approx(area(x[triangles]), rel=1e-12)

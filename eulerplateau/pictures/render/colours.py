@@ -20,7 +20,7 @@ from eulerplateau.pictures.figure import FieldLook, load_matplotlib
 SIDES, SOAP = "sides", "soap"
 _GREY_FRONT, _GREY_BACK = np.full(3, 0.93), np.full(3, 0.72)
 # The back of a film coloured by a field is this much darker.
-_DARKER = 0.65
+_DARKER = 0.8
 # So much that the back, the lighter colour, is lighter in grey too however it lies.
 _AMBIENT, _SHINE = 0.7, 25
 # Light changes the colours of a field less, or they could not be read off the bar.

@@ -294,8 +294,7 @@ def test_by_the_scale_bar_a_flat_film_from_above_has_its_area(browser: Browser) 
     """It and the outer half of the tube round it; the bar follows the zoom."""
     radius, area = browser.evaluate("[all[0].run.radii[0], all[0].run.rows[0].area]")
     for zoom in (1.0, 0.6):
-        browser.evaluate("(film.above(normal()), film.camera.zoom = arguments[0])", zoom)
-        browser.evaluate("(film.camera.updateProjectionMatrix(), film.draw())")
+        browser.evaluate("(film.camera.zoom = arguments[0], film.above(normal()))", zoom)
         assert text_of(browser, "angle") == "seen from above"
         unit, parts = text_of(browser, "length").split("/")
         assert unit == "L"

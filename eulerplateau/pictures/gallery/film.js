@@ -90,12 +90,31 @@ class Film {
     this.controls.reset();
   }
 
-  // From above the plane next to the shape, whose `normal` is of either sign.
+  // From above the plane next to the shape, whose `normal` is of either sign; all of it.
   above(normal) {
     const way = new Libraries.Vector3().fromArray(normal);
     if (way.dot(this.camera.position) < 0) way.negate();
     this.camera.position.copy(this.controls.target).addScaledVector(way, this.far);
     this.controls.update();
+    this.camera.zoom = Math.min(this.camera.zoom, this.room());
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  // The zoom at which all of the shape is just in the picture.
+  room() {
+    this.camera.updateMatrixWorld();
+    const points = this.parts[0].geometry.getAttribute("position");
+    const point = new Libraries.Vector3();
+    let [across, up] = [0, 0];
+    for (let v = 0; v < points.count; v++) {
+      point.fromBufferAttribute(points, v).applyMatrix4(this.camera.matrixWorldInverse);
+      across = Math.max(across, Math.abs(point.x));
+      up = Math.max(up, Math.abs(point.y));
+    }
+    const { right, top } = this.camera;
+    const free = 1.05 * this.largestRadius;
+    return Math.min(right / (1.05 * across + free), top / (1.05 * up + free));
   }
 
   // How high above that plane the eye is, in degrees.

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from eulerplateau.cli.options import offered
-from eulerplateau.errors import OutputError
+from eulerplateau.errors import OutputError, SpecError
 
 _OF_LOOP = "kappa", "kappa_n", "kappa_g", "contact_angle"
 
@@ -65,6 +65,7 @@ def render(
     seen from above in pictures; several make a contact sheet too.
     """
     from eulerplateau.pictures.render import (
+        GIF,
         SIDES,
         SOAP,
         STILLS,
@@ -76,6 +77,8 @@ def render(
     )
     from eulerplateau.runs import read_run, shape_name
 
+    if form != GIF and animate is None:
+        raise SpecError("--format", f"{form} is of animations: add --animate turn or sweep")
     check_format(form)
     run = read_run(folder)
     if everything or (animate == SWEEP and not steps and not loads):

@@ -6,6 +6,8 @@ itself or turns over. Here each pair that overlaps in the picture is compared wh
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -15,6 +17,8 @@ from eulerplateau.mesh import crossing_pairs
 
 # Parts of the picture's extent below which lengths, and of its square areas, are rounding.
 _ROUNDING = 1e-9
+# So many pairs at a time are looked at: of a fine mesh all would fill the memory.
+_BLOCK = 500_000
 
 
 def cut_where_crossing(x: FloatArray, triangles: IntArray) -> tuple[FloatArray, IntArray]:
@@ -80,23 +84,26 @@ def overlaps(corners: FloatArray) -> IntArray:
     extent = float(np.ptp(corners[..., :2], axis=(0, 1)).max())
     area = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     flat = np.where((area < 0)[:, None, None], corners[:, ::-1], corners)
-    pairs = _boxes_meet(flat[..., :2], np.abs(area) > _ROUNDING * extent**2)
-    first, second = flat[pairs[:, 0]], flat[pairs[:, 1]]
-    points = np.concatenate(
-        [_with_middle(first), _with_middle(second), _edges_meet(first, second)], axis=1
-    )
-    tolerance = _ROUNDING * extent
-    common = (
-        _inside(points[:, :4], second, tolerance),
-        _inside(points[:, 4:8], first, tolerance),
-    )
-    use = np.concatenate([*common, np.isfinite(points[:, 8:, 0])], axis=1)
-    met = use.any(axis=1)
-    pairs, first, second, use = pairs[met], first[met], second[met], use[met]
-    total = np.where(use[..., None], points[met], 0.0).sum(axis=1)
-    middle = total / use.sum(axis=1)[:, None]
-    swapped = _depth(second, middle) < _depth(first, middle)
-    return np.where(swapped[:, None], pairs[:, ::-1], pairs)
+    solid = np.abs(area) > _ROUNDING * extent**2
+    found = [
+        _overlapping(flat, pairs, _ROUNDING * extent)
+        for pairs in _boxes_meet(flat[..., :2], solid)
+    ]
+    return np.concatenate([np.empty((0, 2), dtype=np.intp), *found])
+
+
+def _overlapping(corners: FloatArray, pairs: IntArray, tolerance: float) -> IntArray:
+    """Return of pairs (m, 2) of counter-clockwise triangles those that overlap, sorted."""
+    first, second = corners[pairs[:, 0]], corners[pairs[:, 1]]
+    own, other = _with_middle(first), _with_middle(second)
+    met = _edges_meet(first, second)
+    common = _inside(own, second, tolerance), _inside(other, first, tolerance)
+    use = np.concatenate([*common, np.isfinite(met[..., 0])], axis=1)
+    points = np.where(use[..., None], np.concatenate([own, other, met], axis=1), 0.0)
+    seen = use.any(axis=1)
+    middle = points[seen].sum(axis=1) / use[seen].sum(axis=1)[:, None]
+    swapped = _depth(second[seen], middle) < _depth(first[seen], middle)
+    return np.where(swapped[:, None], pairs[seen, ::-1], pairs[seen])
 
 
 def _cut(polygon: FloatArray, face: FloatArray) -> list[FloatArray]:
@@ -125,19 +132,20 @@ def _fan(polygon: FloatArray) -> FloatArray:
     return np.stack([first, polygon[1:-1], polygon[2:]], axis=1)
 
 
-def _boxes_meet(flat: FloatArray, solid: BoolArray) -> IntArray:
-    """Return the pairs (m, 2) of `solid` triangles (n, 3, 2) whose boxes meet."""
+def _boxes_meet(flat: FloatArray, solid: BoolArray) -> Iterator[IntArray]:
+    """Yield the pairs (m, 2) of `solid` triangles (n, 3, 2) whose boxes meet, in blocks."""
     low, high = flat.min(axis=1), flat.max(axis=1)
     order = np.flatnonzero(solid)[np.argsort(low[solid, 0], kind="stable")]
     ends = np.searchsorted(low[order, 0], high[order, 0])
     counts = np.maximum(ends - np.arange(len(order)) - 1, 0)
-    first = np.repeat(np.arange(len(order)), counts)
-    second = (
-        first + 1 + np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
-    )
-    one, other = order[first], order[second]
-    meet = (low[one, 1] < high[other, 1]) & (low[other, 1] < high[one, 1])
-    return np.stack([one, other], axis=1)[meet]
+    blocks = np.flatnonzero(np.diff(np.cumsum(counts) // _BLOCK)) + 1
+    for own in np.split(np.arange(len(order)), blocks):
+        many = counts[own]
+        first = np.repeat(own, many)
+        step = np.arange(len(first)) - np.repeat(np.cumsum(many) - many, many)
+        one, other = order[first], order[first + 1 + step]
+        meet = (low[one, 1] < high[other, 1]) & (low[other, 1] < high[one, 1])
+        yield np.stack([one, other], axis=1)[meet]
 
 
 def _with_middle(corners: FloatArray) -> FloatArray:

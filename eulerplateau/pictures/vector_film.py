@@ -79,8 +79,9 @@ def _what_hides(
     seen = numbers[overlaps(np.concatenate([corners, _tube(ends)]))]
     seen = seen[(seen < n).any(axis=1)]
     over = _rim(shape, parents) + np.array([0, n])
-    keys = [np.sort(pairs, axis=1) @ [n + m, 1] for pairs in (seen, over)]
-    return np.concatenate([seen[~np.isin(*keys)], over])
+    key = np.array([n + m, 1])
+    among = np.isin(np.sort(seen, axis=1) @ key, np.sort(over, axis=1) @ key)
+    return np.concatenate([seen[~among], over])
 
 
 def _rim(shape: Shape, parents: IntArray) -> IntArray:

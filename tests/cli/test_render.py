@@ -68,7 +68,13 @@ def test_a_load_means_the_nearest_shape_of_each_leg(tmp_path: Path, mesh: Disk) 
 
 
 @pytest.mark.parametrize(
-    ("option", "value"), [("--step", 99), ("--load", 1e6), ("--colour", "no_such_field")]
+    ("option", "value"),
+    [
+        ("--step", 99),
+        ("--load", 1e6),
+        ("--colour", "no_such_field"),
+        ("--format", "mp4"),
+    ],
 )
 def test_wrong_choice_ends_with_2_and_names_the_option(
     run: Path, option: str, value: object

@@ -12,7 +12,7 @@ from eulerplateau.mesh.shape import Shape
 
 UP = np.array([0.0, 0.0, 1.0])
 # From above, the y axis up in the picture; by so little aslant that nobody sees it.
-ABOVE = np.array([0.0, -1e-3, 1.0]) / np.hypot(1.0, 1e-3)
+ABOVE: FloatArray = np.array([0.0, -1e-3, 1.0]) / np.hypot(1.0, 1e-3)
 LOOP_RADIUS = 0.0035
 # Height over width of a picture lies between these.
 _LOWEST, _HIGHEST = 0.35, 0.75

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from eulerplateau.cli.options import offered
-from eulerplateau.errors import OutputError
+from eulerplateau.errors import OutputError, SpecError
 
 _OF_LOOP = "kappa", "kappa_n", "kappa_g", "contact_angle"
 
@@ -36,8 +36,16 @@ _OF_LOOP = "kappa", "kappa_n", "kappa_g", "contact_angle"
 @click.option(
     "--animate",
     type=click.Choice(["turn", "sweep"]),
-    help="Instead of pictures, one GIF of each shape turning, or one GIF of the sweep "
+    help="Instead of pictures, an animation of each shape turning, or one of the sweep "
     "(of every shape, if none is chosen).",
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["gif", "mp4"]),
+    default="gif",
+    show_default=True,
+    help="Of animations; MP4 needs eulerplateau[mp4].",
 )
 @click.option("--quiet", is_flag=True, help="No summary: for batches.")
 def render(
@@ -47,25 +55,31 @@ def render(
     everything: bool,
     colour: str | None,
     animate: str | None,
+    form: str,
     quiet: bool,
 ) -> None:
     """Draw the shapes of the run folder DIR, of a sweep or of branches, to DIR/pictures.
 
     Without --step, --load or --all: one shape per distinct state. All pictures of a run
-    have one view and one scale, so that shapes can be compared; several make a contact
-    sheet too.
+    have one scale, so that shapes can be compared, and one view, but that flat films are
+    seen from above in pictures; several make a contact sheet too.
     """
     from eulerplateau.pictures.render import (
+        GIF,
         SIDES,
         SOAP,
         STILLS,
         SWEEP,
+        check_format,
         chosen_steps,
         draw_shapes,
         read_field,
     )
     from eulerplateau.runs import read_run, shape_name
 
+    if form != GIF and animate is None:
+        raise SpecError("--format", f"{form} is of animations: add --animate turn or sweep")
+    check_format(form)
     run = read_run(folder)
     if everything or (animate == SWEEP and not steps and not loads):
         chosen = [row.step for row in run.rows]
@@ -73,7 +87,7 @@ def render(
         chosen = chosen_steps(run, steps, loads)
     if colour not in (None, SIDES, SOAP):
         read_field(folder / shape_name(chosen[0]), colour)
-    if not draw_shapes(folder, chosen, animate or STILLS, colour):
+    if not draw_shapes(folder, chosen, animate or STILLS, colour, form):
         raise OutputError(folder / "pictures", "the pictures could not all be drawn")
     if not quiet:
         click.echo(f"{folder / 'pictures'}: {len(chosen)} shape(s) drawn")

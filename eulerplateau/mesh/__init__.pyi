@@ -1,3 +1,4 @@
+from .crossings import crossing_pairs as crossing_pairs
 from .curvature import Curvatures as Curvatures
 from .disk import Disk as Disk
 from .files import (

@@ -14,7 +14,12 @@ _CONTACT = 1e-13
 
 
 def self_intersections(x: FloatArray, triangles: IntArray) -> int:
-    """Return how many pairs of triangles without a common vertex cross one another.
+    """Return how many pairs of triangles cross one another (`crossing_pairs`)."""
+    return len(crossing_pairs(x, triangles))
+
+
+def crossing_pairs(x: FloatArray, triangles: IntArray) -> IntArray:
+    """Return the pairs (n, 2) of triangles without a common vertex that cross one another.
 
     Two triangles cross if each has corners strictly on both sides of the other's plane and
     they have a segment, not only a point, in common. Contact is no crossing: a corner or
@@ -42,12 +47,24 @@ def self_intersections(x: FloatArray, triangles: IntArray) -> int:
     axes = np.argsort(-extent)
     order = np.argsort(low[:, axes[0]], kind="stable")
     boxes = np.stack([low[order][:, axes], high[order][:, axes]], axis=1)
-    return int(_sweep(x, triangles[order], boxes, _CONTACT * float(extent.max())))
+    contact = _CONTACT * float(extent.max())
+    pairs = np.empty((0, 2), dtype=np.int64)
+    count = _sweep(x, triangles[order], boxes, contact, pairs)
+    if count:
+        pairs = np.empty((count, 2), dtype=np.int64)
+        _sweep(x, triangles[order], boxes, contact, pairs)
+    found: IntArray = order[pairs]
+    return found
 
 
 @njit(cache=True)
-def _sweep(x: FloatArray, triangles: IntArray, boxes: FloatArray, contact: float) -> int:
-    """Count crossing pairs; `boxes` (n_t, 2, 3) ascend in their lower end along axis 0."""
+def _sweep(
+    x: FloatArray, triangles: IntArray, boxes: FloatArray, contact: float, pairs: IntArray
+) -> int:
+    """Count crossing pairs, and put the first of them into `pairs` (n, 2).
+
+    `boxes` (n_t, 2, 3) ascend in their lower end along axis 0.
+    """
     count = 0
     points = np.empty((2, 3, 3))
     distance = np.empty((2, 3))
@@ -67,6 +84,8 @@ def _sweep(x: FloatArray, triangles: IntArray, boxes: FloatArray, contact: float
                     points[0, k, axis] = x[triangles[i, k], axis]
                     points[1, k, axis] = x[triangles[j, k], axis]
             if _cross(points, distance, normal, contact):
+                if count < len(pairs):
+                    pairs[count, 0], pairs[count, 1] = i, j
                 count += 1
     return count
 

@@ -5,12 +5,13 @@
     comparison.py    figures for print, of one run or of several; onset.py: scaling laws
     film_pictures.py, cell_pictures.py   what all of these show, by what a run follows:
                      of_run.py tells which, kinds.py what there is to be told
-    portraits.py     shapes above a diagram: films by vector_film.py, cells by outlines.py
+    portraits.py     shapes above a diagram: films by vector_film.py, cells by outlines.py;
+                     layers.py: what hides what
     planar.py        figures of the exact planar films
     area_fit.py      cell areas over stiffness, with what was fitted to them
     figure.py        labels, colours, sizes, saving: what all figures have in common
     looks.py         how curves are told apart, and legends
-    view.py, alignment.py   from where films are seen, and turned to lie alike
+    alignment.py     shapes turned to lie alike
     render/          stills and animations by VTK, in a child process (child.py)
     gallery/         a run as one page to browse
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh import Shape
-from eulerplateau.mesh.drawing import View, view_from
+from eulerplateau.mesh.drawing import ABOVE, View, view_from
 from eulerplateau.pictures.figure import FieldLook
 from eulerplateau.pictures.kinds import KindPictures, Stage
 from eulerplateau.pictures.outlines import outlines
@@ -29,8 +29,6 @@ EIGENVALUE = panel(
     logarithmic=True,
 )
 
-# From above, the y axis up in the picture; by so little aslant that nobody sees it.
-_ABOVE = np.array([0.0, -1e-3, 1.0])
 # The circumference of a round cell of radius R_0.
 _SIZE = 2 * np.pi
 
@@ -63,7 +61,12 @@ def _centred(
 
 
 def _from_above(shapes: Sequence[Shape]) -> View:
-    return view_from(shapes, _ABOVE / np.linalg.norm(_ABOVE))
+    return view_from(shapes, ABOVE)
+
+
+def _all_from_above(shapes: Sequence[Shape]) -> list[View]:
+    """Return one view for all: a cell's adhesions keep their places."""
+    return [_from_above(shapes)] * len(shapes)
 
 
 def _is_inflected(row: Any) -> bool:
@@ -88,11 +91,14 @@ CELL = KindPictures(
     portraits=outlines,
     state=lambda row: cell_state(row) or row.status.value.replace("_", " "),
     stage=Stage(
-        eye=_ABOVE,
+        eye=ABOVE,
         size=_SIZE,
         settled=_centred,
         aligned=lambda shapes: shapes,
         view=_from_above,
+        views=_all_from_above,
+        length="R₀",
+        bar=(1.0 / _SIZE, "$R_0$"),
         colour="kappa",
         fields={"kappa": FieldLook(r"$\kappa R_0$", signed=True)},
     ),

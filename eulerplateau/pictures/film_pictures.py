@@ -11,7 +11,15 @@ from typing import Any, cast
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh.drawing import EYE, aligned, common_view
+from eulerplateau.mesh import Shape
+from eulerplateau.mesh.drawing import (
+    EYE,
+    View,
+    aligned,
+    common_view,
+    is_flat,
+    own_views,
+)
 from eulerplateau.pictures.alignment import settled_runs
 from eulerplateau.pictures.figure import ABS_KAPPA_N, MINUS_K, FieldLook, Portraits
 from eulerplateau.pictures.kinds import KindPictures, Stage
@@ -27,6 +35,8 @@ from eulerplateau.runs import (
     read_shape,
 )
 
+# The length of a scale bar, in L.
+_BAR = 0.1
 # A planar film's twist jumps by half turns where its rim passes through itself.
 _JUMP = 90.0
 
@@ -124,16 +134,34 @@ def signed_twists(branch: Branch) -> list[FloatArray]:
 
 
 def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
-    """Return films as vectors, turned to lie alike, seen from one side."""
+    """Return films as vectors, turned to lie alike, flat ones seen from above."""
     films = [aligned([read_shape(path) for path in own]) for own in paths]
     every = [shape for shapes in films for shape in shapes]
-    eye = common_view(every).eye
-    half = room(every, eye)
+    views = own_views(every)
+    eyes = [view.eye for view in views]
+    half = room(every, eyes)
+    left = iter(eyes)
     draw = [
-        [partial(draw_film, shape=shape, eye=eye, half=half) for shape in shapes]
+        [partial(draw_film, shape=shape, eye=next(left), half=half) for shape in shapes]
         for shapes in films
     ]
-    return Portraits(draw, half)
+    return Portraits(draw, half, note=_note(every, views), bar=_BAR)
+
+
+def _note(shapes: Sequence[Shape], views: Sequence[View]) -> str:
+    """Return from where films are seen, in a line."""
+    heights = {
+        view.height(shape)
+        for shape, view in zip(shapes, views, strict=True)
+        if not is_flat(shape)
+    }
+    if not heights:
+        return "seen from above; bar: $L/10$"
+    low, high = min(heights), max(heights)
+    others = f"{low}°" if low == high else f"{low}° to {high}°"
+    flat = len(shapes) > sum(not is_flat(shape) for shape in shapes)
+    which = "flat films are seen from above, others from" if flat else "seen from"
+    return f"{which} {others} above their planes; bar: $L/10$"
 
 
 _FIELDS = {
@@ -151,11 +179,23 @@ FILM = KindPictures(
     band="not planar",
     branches=_branches,
     plots=_PLOTS,
+    errors=FLAT_ERRORS,
     needs={"contact": "contact_force"},
     has_onset=True,
     numbered=lambda row: float(row.abs_kappa_n),
     flat=is_planar,
     portraits=_portraits,
     state=lambda row: "",
-    stage=Stage(EYE, 1.0, settled_runs, aligned, common_view, "sides", _FIELDS),
+    stage=Stage(
+        eye=EYE,
+        size=1.0,
+        settled=settled_runs,
+        aligned=aligned,
+        view=common_view,
+        views=own_views,
+        length="L",
+        bar=(_BAR, "$L/10$"),
+        colour="sides",
+        fields=_FIELDS,
+    ),
 )

@@ -26,7 +26,9 @@ class Stage:
     settled : of curves with their shapes (n, n_v, 3) on one loop, the shapes turned to
         follow each other, for animations
     aligned : shapes turned to lie alike, for prints
-    view : from where shapes are seen
+    view, views : from where shapes are seen together, and each by itself at one scale
+    length : the unit of the shapes
+    bar : how long a scale bar is, in lengths of a loop, and what it is called
     colour : str, what renders colour by if nothing is said
     fields : how fields are shown, by name
     """
@@ -38,6 +40,9 @@ class Stage:
     ]
     aligned: Callable[[Sequence[Shape]], Sequence[Shape]]
     view: Callable[[Sequence[Shape]], View]
+    views: Callable[[Sequence[Shape]], Sequence[View]]
+    length: str
+    bar: tuple[float, str]
     colour: str
     fields: Mapping[str, FieldLook]
 
@@ -60,6 +65,7 @@ class KindPictures:
     portraits : the portraits of shapes, from each run's files
     state : of a row, its state in a word; empty if the shape says it
     stage : how shapes are seen in renders and in the gallery
+    errors : by columns, what rounding and residuals can make of a flat shape's value
     needs : by the names of plots, a column without which there is nothing to be seen
     """
 
@@ -75,4 +81,5 @@ class KindPictures:
     portraits: Callable[[Sequence[Sequence[Path]]], Portraits]
     state: Callable[[Any], str]
     stage: Stage
+    errors: Mapping[str, Callable[[Any], float]] = field(default_factory=dict)
     needs: Mapping[str, str] = field(default_factory=dict)

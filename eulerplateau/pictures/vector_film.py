@@ -11,65 +11,120 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh import Shape
-from eulerplateau.mesh.drawing import UP
+from eulerplateau.mesh.drawing import BACK, FRONT, LOOP, LOOP_RADIUS, UP
+from eulerplateau.pictures.layers import cut_where_crossing, layers, overlaps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_FRONT, _BACK, _LOOP = "#5BA4D9", "#FAD09C", "#1A1A1A"
 _LOOP_WIDTH = 1.0
+# Width of the parts' edges: it closes the gaps that smoothing leaves between them, and is
+# the most by which the line is ragged in which a film passes through itself.
+_SEAM = 0.2
+# Into so many an edge of the loop is divided, for it may be hidden in part.
+_STRETCHES = 6
 # Part of its colour that a film keeps where it is seen edge-on.
 _DARKEST = 0.72
-# The loop is painted as if it were so many of its edges' lengths nearer to the eye: then it
-# hides the rim of the film beside it.
-_NEARER = 1.0
 
 
-def room(shapes: Sequence[Shape], eye: FloatArray) -> tuple[float, float]:
+def room(shapes: Sequence[Shape], eyes: Sequence[FloatArray]) -> tuple[float, float]:
     """Return half the width and height that hold every shape about its loop's centre."""
-    seen = np.concatenate([_project(shape.x, eye)[:, :2] for shape in shapes])
-    half = 1.06 * np.abs(seen).max(axis=0)
+    seen = [_project(shape.x, eye)[:, :2] for shape, eye in zip(shapes, eyes, strict=True)]
+    half = 1.06 * np.abs(np.concatenate(seen)).max(axis=0)
     return float(half[0]), float(half[1])
 
 
 def draw_film(ax: Axes, shape: Shape, eye: FloatArray, half: tuple[float, float]) -> None:
     """Draw a shape, centred at the origin, into a field of `half` its width and height.
 
-    `eye` is the unit vector (3,) towards the viewer. Triangles and loop edges are painted
-    from the farthest to the nearest.
+    `eye` is the unit vector (3,) towards the viewer. What hides something is painted after.
     """
     from matplotlib.collections import PolyCollection
-    from matplotlib.colors import to_rgb
 
     x = _project(shape.x, eye)
-    corners = x[shape.triangles]
-    a, b, c = corners.transpose(1, 0, 2)
-    normals = np.cross(b - a, c - a)
-    facing = normals[:, 2] / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
-    shade = _DARKEST + (1 - _DARKEST) * np.abs(facing)
-    sides = np.where(facing[:, None] > 0, to_rgb(_FRONT), to_rgb(_BACK)) * shade[:, None]
-    ends = np.stack([x[shape.loop], x[np.roll(shape.loop, -1)]], axis=1)
-    nearer = _NEARER * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    depths = [corners[..., 2].mean(axis=1), ends[..., 2].mean(axis=1) + nearer]
-    colours = np.concatenate([sides, np.tile(to_rgb(_LOOP), (len(ends), 1))])
-    # As wide an edge as closes the seams that smoothing leaves between triangles.
-    widths = np.repeat([0.35, _LOOP_WIDTH], [len(corners), len(ends)])
-    order = np.argsort(np.concatenate(depths))
-    outlines = [*corners[..., :2], *ends[..., :2]]
+    corners, parents = cut_where_crossing(x, shape.triangles)
+    ends = _stretches(x[shape.loop])
+    outlines = [*corners, *ends]
+    depth = np.array([outline[:, 2].mean() for outline in outlines])
+    order = np.lexsort((depth, layers(_what_hides(shape, corners, parents, ends), depth)))
+    film = _shaded(x[shape.triangles])[parents]
+    colours = np.concatenate([film, [LOOP] * len(ends)])[order]
     ax.add_collection(
         PolyCollection(
-            [outlines[place] for place in order],
-            facecolors=colours[order],
-            edgecolors=colours[order],
-            linewidths=widths[order],
+            [outlines[place][:, :2] for place in order],
+            facecolors=colours,
+            edgecolors=colours,
+            linewidths=np.repeat([_SEAM, _LOOP_WIDTH], [len(film), len(ends)])[order],
             joinstyle="round",
             capstyle="round",
         )
     )
     ax.set(xlim=(-half[0], half[0]), ylim=(-half[1], half[1]), aspect="equal")
     ax.set_axis_off()
+
+
+def _what_hides(
+    shape: Shape, corners: FloatArray, parents: IntArray, ends: FloatArray
+) -> IntArray:
+    """Return pairs (m, 2) of which the first is to be painted before the second.
+
+    Numbered are first the parts (n, 3, 3) of the film, then the stretches (k n_b, 2, 3) of
+    the loop. These lie over the triangles that their edge ends at, and in the way of all
+    others as the front of a wire does.
+    """
+    n, m = len(corners), len(ends)
+    numbers = np.concatenate([np.arange(n), np.tile(n + np.arange(m), 2)])
+    seen = numbers[overlaps(np.concatenate([corners, _tube(ends)]))]
+    seen = seen[(seen < n).any(axis=1)]
+    over = _rim(shape, parents) + np.array([0, n])
+    key = np.array([n + m, 1])
+    among = np.isin(np.sort(seen, axis=1) @ key, np.sort(over, axis=1) @ key)
+    return np.concatenate([seen[~among], over])
+
+
+def _rim(shape: Shape, parents: IntArray) -> IntArray:
+    """Return pairs (m, 2) of a part of the film and a stretch of the loop beside it."""
+    n_b = len(shape.loop)
+    place = np.full(len(shape.x), -1)
+    place[shape.loop] = np.arange(n_b)
+    part, corner = np.nonzero(place[shape.triangles][parents] >= 0)
+    after = place[shape.triangles][parents][part, corner]
+    edges = np.stack([after, after - 1], axis=1) % n_b
+    stretches = edges[..., None] * _STRETCHES + np.arange(_STRETCHES)
+    return np.stack(np.broadcast_arrays(part[:, None, None], stretches), axis=-1).reshape(
+        -1, 2
+    )
+
+
+def _stretches(x_loop: FloatArray) -> FloatArray:
+    """Return the ends (k n_b, 2, 3) of a loop's edges (n_b, 3), each in k stretches."""
+    share = np.arange(_STRETCHES + 1)[:, None] / _STRETCHES
+    after = np.roll(x_loop, -1, axis=0)
+    points = x_loop[:, None] + share * (after - x_loop)[:, None]
+    return np.stack([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2, 3)
+
+
+def _tube(ends: FloatArray) -> FloatArray:
+    """Return the front of a tube round edges (n_b, 2, 3): two triangles (3, 3) for each."""
+    way = ends[:, 1, :2] - ends[:, 0, :2]
+    across = np.stack([-way[:, 1], way[:, 0]], axis=1)
+    across *= LOOP_RADIUS / np.maximum(np.linalg.norm(way, axis=1), 1e-300)[:, None]
+    start, end = (ends[:, side] + [0.0, 0.0, LOOP_RADIUS] for side in (0, 1))
+    aside = np.concatenate([across, np.zeros((len(ends), 1))], axis=1)
+    a, b, c, d = start - aside, end - aside, end + aside, start + aside
+    return np.concatenate([np.stack(half, axis=1) for half in ((a, b, c), (a, c, d))])
+
+
+def _shaded(corners: FloatArray) -> FloatArray:
+    """Return the colours (n_t, 3) of triangles (n_t, 3, 3), darker where seen aslant."""
+    a, b, c = corners.transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    facing = normals[:, 2] / np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
+    shade = _DARKEST + (1 - _DARKEST) * np.abs(facing)
+    colours: FloatArray = np.where(facing[:, None] > 0, FRONT, BACK) * shade[:, None]
+    return colours
 
 
 def _project(x: FloatArray, eye: FloatArray) -> FloatArray:

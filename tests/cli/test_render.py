@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +10,12 @@ import pytest
 from click.testing import CliRunner
 
 from eulerplateau.cli.render import render
-from eulerplateau.errors import EulerPlateauError, OutputError, SpecError
+from eulerplateau.errors import (
+    EulerPlateauError,
+    MissingLibraryError,
+    OutputError,
+    SpecError,
+)
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.render import chosen_steps
 from eulerplateau.runs import read_run
@@ -62,7 +68,13 @@ def test_a_load_means_the_nearest_shape_of_each_leg(tmp_path: Path, mesh: Disk) 
 
 
 @pytest.mark.parametrize(
-    ("option", "value"), [("--step", 99), ("--load", 1e6), ("--colour", "no_such_field")]
+    ("option", "value"),
+    [
+        ("--step", 99),
+        ("--load", 1e6),
+        ("--colour", "no_such_field"),
+        ("--format", "mp4"),
+    ],
 )
 def test_wrong_choice_ends_with_2_and_names_the_option(
     run: Path, option: str, value: object
@@ -77,6 +89,17 @@ def test_folder_that_is_no_run_ends_with_5(tmp_path: Path) -> None:
     error = carried_out(tmp_path)
     assert isinstance(error, OutputError)
     assert error.exit_code == 5
+
+
+def test_mp4_without_its_library_ends_with_1_and_says_what_to_install(
+    run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "av", None)
+    error = carried_out(run, "--animate", "sweep", "--format", "mp4")
+    assert isinstance(error, MissingLibraryError)
+    assert error.exit_code == 1
+    assert "pip install 'eulerplateau[mp4]'" in str(error)
+    assert not (run / "pictures" / "sweep.mp4").exists()
 
 
 def test_pictures_that_fail_end_with_5(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:

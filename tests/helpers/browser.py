@@ -122,6 +122,16 @@ class Browser:
             "Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=turn
         )
 
+    def resize(self, width: int, height: int) -> None:
+        """Give the page so many pixels."""
+        self._command(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
+
     def become_a_phone(self) -> None:
         """Have a screen of 390 x 844 points that is touched."""
         self._command(

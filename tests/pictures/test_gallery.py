@@ -192,6 +192,25 @@ def test_cells_that_are_not_numbers_are_null(tmp_path: Path, mesh: Disk) -> None
     assert [cells[name] for name in ("energy", "area", "n_unstable")] == [None] * 3
 
 
+def test_noise_of_a_flat_film_is_shown_as_zero(tmp_path: Path, mesh: Disk) -> None:
+    """And nothing else: not a half turn of a flat film, not a small twist of a bent one."""
+    flat = replace(ROW, abs_kappa_n=1e-10, total_gauss_curvature=-1e-11, waist_twist=-6e-12)
+    turned = replace(flat, step=1, waist_twist=180.0)
+    bent = replace(
+        flat, step=2, abs_kappa_n=0.5, total_gauss_curvature=-0.3, waist_twist=6e-12
+    )
+    with RunFolder.create(tmp_path, {"status": "finished"}) as folder:
+        for row in (flat, turned, bent):
+            folder.record(row, mesh, twisted(mesh, 0.1))
+    data = Page(page(collect([tmp_path]))).data
+    names = ("abs_kappa_n", "total_gauss_curvature", "waist_twist")
+    found = [
+        [cells[data["columns"].index(name)] for name in names]
+        for cells in data["runs"][0]["rows"]
+    ]
+    assert found == [[0.0, 0.0, 0.0], [0.0, 0.0, 180.0], [0.5, -0.3, 6e-12]]
+
+
 def test_page_refers_to_nothing_outside_it_and_may_not(tmp_path: Path, mesh: Disk) -> None:
     content = Page(page(collect([sweep(tmp_path / "run", mesh, [1.0])])))
     names = {name for _, name, _ in content.attributes}

@@ -51,6 +51,7 @@ def started(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 @pytest.fixture
 def browser(started: Browser, gallery: Path) -> Iterator[Browser]:
     """The page just opened; afterwards it has not complained, nor fetched anything."""
+    started.resize(1400, 900)
     started.open(gallery)
     yield started
     assert started.complaints() == []
@@ -257,6 +258,67 @@ def test_hidden_branches_are_not_to_be_clicked(browser: Browser) -> None:
     browser.click(*place)
     browser.wait_for(lambda: step(browser) > 0)
     assert series(browser) not in ("branch 1", "branch 2")
+
+
+# What is to be read or pressed around diagram and shape: its box, and whether what is in it
+# has room there; a list of choices is cut off with dots.
+BOXES = """[...document.querySelectorAll("header > *, nav > *, #scale > *")].map((one) => {
+    const { left, top, right, bottom } = one.getBoundingClientRect();
+    const fits = one.tagName === "SELECT" || one.scrollWidth <= one.clientWidth + 1;
+    return [one.id || one.tagName, [left, top, right, bottom], fits];
+})"""
+
+
+def are_apart(box: list[float], other: list[float]) -> bool:
+    """Whether boxes, of left, top, right and bottom, overlap by less than half a pixel."""
+    low, high = np.reshape([box, other], (2, 2, 2)).transpose(1, 0, 2)
+    return bool((high.min(axis=0) - low.max(axis=0) < 0.5).any())
+
+
+@pytest.mark.parametrize("wide", [1280, 768, 375])
+def test_no_label_lies_on_a_button(browser: Browser, wide: int) -> None:
+    browser.resize(wide, 812)
+    browser.evaluate("show(all[1], arguments[0])", peak(browser))
+    boxes = browser.evaluate(BOXES)
+    assert len(boxes) > 10
+    for number, (name, box, fits) in enumerate(boxes):
+        assert fits, name
+        assert box[0] >= -0.5, name
+        assert box[2] <= wide + 0.5, name
+        for other, beside, _ in boxes[:number]:
+            assert are_apart(box, beside), (name, other)
+    browser.screenshot(ARTEFACTS / f"gallery-{wide}.png")
+
+
+def test_by_the_scale_bar_a_flat_film_from_above_has_its_area(browser: Browser) -> None:
+    """It and the outer half of the tube round it; the bar follows the zoom."""
+    radius, area = browser.evaluate("[all[0].run.radii[0], all[0].run.rows[0].area]")
+    for zoom in (1.0, 0.6):
+        browser.evaluate("(film.camera.zoom = arguments[0], film.above(normal()))", zoom)
+        assert text_of(browser, "angle") == "seen from above"
+        unit, parts = text_of(browser, "length").split("/")
+        assert unit == "L"
+        bar = "document.getElementById('bar').getBoundingClientRect().width"
+        pixel = 1.0 / (int(parts) * browser.evaluate(bar))
+        ink = (browser.picture("film").min(axis=2) < 0.9).sum()
+        whole = area + radius + np.pi * radius**2
+        # The outline is as long as the loop, L: by a pixel along it they may differ.
+        assert ink * pixel**2 == pytest.approx(whole, abs=pixel)
+
+
+def text_of(browser: Browser, name: str) -> str:
+    return str(browser.evaluate("document.getElementById(arguments[0]).textContent", name))
+
+
+def test_every_group_has_a_colour_and_marker_of_its_own(browser: Browser) -> None:
+    looks = browser.evaluate(
+        "[...diagram.groups.values()].map(([{ colour, marker }]) => `${colour} ${marker}`)"
+    )
+    assert len(set(looks)) == len(looks) > 3
+    shown = browser.evaluate(
+        "[...document.querySelectorAll('#legend i')].map((i) => i.textContent)"
+    )
+    assert len(set(shown)) == min(len(looks), 4)
 
 
 def test_several_runs_are_one_diagram(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -10,13 +11,14 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import av
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.pictures.render import STILLS, SWEEP, TURN, RunPictures
+from eulerplateau.pictures.render import GIF, MP4, STILLS, SWEEP, TURN, RunPictures
 from tests.helpers.shapes import disk_points, eight, fitted_order, mesh_of, rotation
 from tests.runs.test_folder import start
 from tests.runs.test_output import ROW
@@ -82,17 +84,16 @@ def again(run: Path) -> Path:
 def child(run: Path, again: Path) -> subprocess.CompletedProcess[bytes]:
     """The child that draws pictures of every kind, without a display."""
     wanted = [
-        (run, STILLS, "sides", EVERY),
-        (run, STILLS, "soap", BOTH),
-        (run, STILLS, "angle_defect", BOTH),
-        (run, STILLS, "kappa_n", BOTH),
-        (run, TURN, "sides", (FOLDED,)),
-        (run, SWEEP, "sides", EVERY),
-        (again, STILLS, "sides", (3,)),
+        (run, STILLS, GIF, "sides", EVERY),
+        (run, STILLS, GIF, "soap", BOTH),
+        (run, STILLS, GIF, "angle_defect", BOTH),
+        (run, STILLS, GIF, "kappa_n", BOTH),
+        (run, TURN, GIF, "sides", (FOLDED,)),
+        (run, SWEEP, GIF, "sides", EVERY),
+        (run, SWEEP, MP4, "sides", EVERY),
+        (again, STILLS, GIF, "sides", (3,)),
     ]
-    calls = [
-        [str(to), kind, colour, *map(str, steps)] for to, kind, colour, steps in wanted
-    ]
+    calls = [[str(to), *how, *map(str, steps)] for to, *how, steps in wanted]
     command = [sys.executable, "-c", DRAW, json.dumps(calls)]
     return subprocess.run(command, env=without_display(), capture_output=True, check=True)
 
@@ -127,13 +128,24 @@ def frames(path: Path) -> tuple[list[Image], list[int]]:
     return images, times
 
 
-def above(image: Image) -> Image:
-    """The image without what is written at its lower edge."""
-    return image[: int(0.88 * len(image))]
+def above(image: Image, bar: bool = False) -> Image:
+    """The image without what is written below it, a colour `bar` or not."""
+    return image[: -written(image, bar)]
 
 
-def inked(image: Image) -> NDArray[np.bool_]:
-    return above(image).min(axis=2) < 250
+def below(image: Image, bar: bool = False) -> Image:
+    """What is written below an image."""
+    return image[-written(image, bar) :]
+
+
+def written(image: Image, bar: bool) -> int:
+    """How many pixels high that is: lines of 28 points below a picture 8 inches wide."""
+    points = 2.4 * 28.0 + (72.0 if bar else 0.0)
+    return 2 * math.ceil(0.5 * points * image.shape[1] / 8.0 / 72.0)
+
+
+def inked(image: Image, bar: bool = False) -> NDArray[np.bool_]:
+    return above(image, bar).min(axis=2) < 250
 
 
 def width(image: Image) -> int:
@@ -141,18 +153,60 @@ def width(image: Image) -> int:
     return int(columns[-1] - columns[0] + 1)
 
 
-def assert_whole(image: Image) -> None:
-    """Something is seen, and white all around it: it is not cut off, nor under the text."""
-    ink = inked(image)
+def assert_whole(image: Image, bar: bool = False) -> None:
+    """Something is seen, and white all around it: it is not cut off."""
+    ink = inked(image, bar)
     assert ink.mean() > 0.02
     for edge in (ink[0], ink[-1], ink[:, 0], ink[:, -1]):
         assert not edge.any()
-    assert (image[int(0.88 * len(image)) :].min(axis=2) < 128).any()  # the caption
+    assert (below(image, bar).min(axis=2) < 128).any()  # the caption
 
 
 def test_all_of_every_shape_is_seen_and_captioned(drawn: Path) -> None:
     for step in EVERY:
         assert_whole(read(drawn / f"shape_{step:04d}.png"))
+
+
+def test_a_flat_film_has_its_true_outline(drawn: Path) -> None:
+    """Seen from above it is 1.2 times as long as it is wide, to a pixel or two.
+
+    The ends of its axes are vertices, or off them by less than a pixel.
+    """
+    ink = inked(read(drawn / f"shape_{FLAT:04d}.png"))
+    across, up = (int(ink.any(axis=axis).sum()) for axis in (0, 1))
+    tube = 0.007 / 0.1 * bar_length(read(drawn / f"shape_{FLAT:04d}.png"))
+    assert (across - tube) / (up - tube) == pytest.approx(1.2, abs=3.0 / up)
+
+
+def test_the_scale_bar_is_a_tenth_of_the_loops_length(drawn: Path, run: Path) -> None:
+    for step in BOTH:
+        image = read(drawn / f"shape_{step:04d}.png")
+        pictures = RunPictures.read(run, [step])
+        shapes = pictures.stage.aligned(pictures.shapes)
+        view = pictures.stage.views(shapes)[step]
+        right = np.cross([0.0, 0.0, 1.0], view.eye)
+        seen = np.ptp(shapes[step].x @ right) / np.linalg.norm(right) + 0.007
+        assert width(image) / bar_length(image) == pytest.approx(seen / 0.1, rel=0.02)
+
+
+def bar_length(image: Image) -> int:
+    """The longest row of black pixels below an image."""
+    dark = below(image).max(axis=2) < 100
+    ends = np.diff(np.pad(dark.astype(int), ((0, 0), (1, 1))), axis=1)
+    starts, stops = (np.argwhere(ends == sign) for sign in (1, -1))
+    return int((stops - starts)[:, 1].max())
+
+
+def test_front_and_back_are_told_apart_in_grey(drawn: Path) -> None:
+    """Of a film that turns over the blue side is darker throughout than the orange one."""
+    from PIL import Image as Images
+
+    image = above(read(drawn / f"shape_{FOLDED:04d}.png"))
+    grey = np.asarray(Images.fromarray(image).convert("L"))
+    red, _, blue = image.astype(int).transpose(2, 0, 1)
+    front, back = grey[blue > red + 60], grey[red > blue + 60]
+    assert len(front) > 500 < len(back)
+    assert np.percentile(front, 98) < np.percentile(back, 2)
 
 
 def test_all_pictures_have_one_scale(drawn: Path) -> None:
@@ -170,7 +224,9 @@ def test_the_view_is_the_runs_whatever_is_shown(drawn: Path, again: Path) -> Non
 
 def test_contact_sheet_shows_every_shape(drawn: Path) -> None:
     sheet = read(drawn / "sheet.png")
-    height, wide = 300, 400
+    one = read(drawn / "shape_0000.png")
+    wide = 600
+    height = round(wide * len(one) / one.shape[1])
     cells = [
         sheet[y : y + height, x : x + wide]
         for y in range(0, len(sheet), height)
@@ -180,6 +236,7 @@ def test_contact_sheet_shows_every_shape(drawn: Path) -> None:
     for cell in cells[:N_SHAPES]:
         assert_whole(cell)
     assert all((cell == 255).all() for cell in cells[N_SHAPES:])
+    assert sheet.shape[1] == 3 * wide  # or letters would be too small in print
 
 
 def test_a_film_that_turns_over_shows_two_colours_in_every_style(drawn: Path) -> None:
@@ -191,13 +248,13 @@ def test_a_film_that_turns_over_shows_two_colours_in_every_style(drawn: Path) ->
         assert reddish(folded) > 0.02
 
 
-def bluish(image: Image) -> float:
-    colours = above(image).astype(int)
+def bluish(image: Image, bar: bool = False) -> float:
+    colours = above(image, bar).astype(int)
     return float((colours[..., 2] > colours[..., 0] + 15).mean())
 
 
-def reddish(image: Image) -> float:
-    colours = above(image).astype(int)
+def reddish(image: Image, bar: bool = False) -> float:
+    colours = above(image, bar).astype(int)
     return float((colours[..., 0] > colours[..., 2] + 15).mean())
 
 
@@ -205,11 +262,12 @@ def reddish(image: Image) -> float:
 def test_a_field_has_its_colours_and_their_bar(drawn: Path, field: str) -> None:
     """Neither field vanishes on a film that is twisted; both do on a flat one."""
     flat, folded = (read(drawn / f"shape_{step:04d}_{field}.png") for step in BOTH)
-    assert reddish(flat) + bluish(flat) < 0.001
-    assert reddish(folded) + bluish(folded) > 0.005
+    assert reddish(flat, True) + bluish(flat, True) < 0.001
+    seen = inked(folded, True).mean()
+    assert reddish(folded, True) + bluish(folded, True) > 0.02 * seen
     for image in (flat, folded):
-        assert_whole(image)
-        bar = image[int(0.88 * len(image)) :, image.shape[1] // 2 :].astype(int)
+        assert_whole(image, True)
+        bar = below(image, True).astype(int)
         assert np.ptp(bar[..., 0] - bar[..., 2]) > 200
 
 
@@ -228,6 +286,23 @@ def test_a_sweep_shows_each_shape_and_holds_the_last(drawn: Path) -> None:
     assert times[-1] > 5 * times[0]
     for image in images:
         assert_whole(image)
+
+
+def test_a_film_in_mp4_has_the_frames_of_the_gif(drawn: Path) -> None:
+    """Of even size, in the pixels browsers play, as long as the GIF and alike."""
+    images, times = frames(drawn / "sweep.gif")
+    with av.open(drawn / "sweep.mp4") as film:
+        stream = film.streams.video[0]
+        pixels = [frame.to_ndarray(format="rgb24") for frame in film.decode(stream)]
+        assert stream.codec_context.name == "h264"
+        assert stream.codec_context.pix_fmt == "yuv420p"
+        assert float(len(pixels) / stream.average_rate) == pytest.approx(sum(times) / 1000)
+    shown = np.repeat(np.arange(len(times)), np.array(times) // times[0])
+    assert len(pixels) == len(shown)
+    for found, place in zip(pixels, shown, strict=True):
+        assert found.shape == images[place].shape
+        assert not any(size % 2 for size in found.shape[:2])
+        assert np.abs(found.astype(int) - images[place]).mean() < 3.0
 
 
 def unlike(a: Image, b: Image) -> float:
@@ -270,6 +345,6 @@ def test_the_child_does_not_mind_the_backend_of_a_notebook(run: Path) -> None:
     environment = without_display()
     environment["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
     module = [sys.executable, "-m", "eulerplateau.pictures.render"]
-    command = [*module, str(run), STILLS, "sides", "0"]
+    command = [*module, str(run), STILLS, GIF, "sides", "0"]
     child = subprocess.run(command, env=environment, capture_output=True, check=True)
     assert child.stdout == child.stderr == b""

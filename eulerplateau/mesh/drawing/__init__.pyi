@@ -12,11 +12,14 @@ from .film import (
 )
 from .picture import Picture as Picture, check_drawing as check_drawing
 from .view import (
-    ASPECT as ASPECT,
+    ABOVE as ABOVE,
     LOOP_RADIUS as LOOP_RADIUS,
     UP as UP,
     View as View,
     common_view as common_view,
+    is_flat as is_flat,
+    mean_normal as mean_normal,
+    own_views as own_views,
     turning_views as turning_views,
     view_from as view_from,
 )

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.drawing.alignment import aligned
-from eulerplateau.mesh.drawing.view import ASPECT, LOOP_RADIUS, UP, View, common_view
+from eulerplateau.mesh.drawing.view import LOOP_RADIUS, UP, View, common_view
 from eulerplateau.mesh.shape import Shape
 
-# Okabe and Ito's sky blue and orange, softened: front and back of the film.
-FRONT, BACK, LOOP = (0.44, 0.71, 0.89), (0.95, 0.65, 0.38), (0.17, 0.17, 0.17)
+# A blue and an orange, front and back of the film: in grey the front is the darker one.
+FRONT, BACK, LOOP = (0.357, 0.643, 0.851), (0.980, 0.816, 0.612), (0.10, 0.10, 0.10)
 GLOSS = {"ambient": 0.35, "diffuse": 0.65, "specular": 0.3}
 _WIDTH = 800
 
@@ -42,7 +42,8 @@ def film_plotter(shape: Shape, window: bool, options: Mapping[str, Any]) -> Any:
     """
     pyvista = load_pyvista()
     (turned,) = aligned([shape])
-    size = [_WIDTH, round(ASPECT * _WIDTH)]
+    view = common_view([turned])
+    size = list(view.size(_WIDTH))
     plotter: Any = pyvista.Plotter(off_screen=not window, window_size=size)
     plotter.set_background("white")
     plotter.enable_anti_aliasing("ssaa")
@@ -51,7 +52,7 @@ def film_plotter(shape: Shape, window: bool, options: Mapping[str, Any]) -> Any:
     painted = {} if "scalars" in options else plain
     plotter.add_mesh(film, **{"smooth_shading": True, **painted, **options})
     plotter.add_mesh(loop_tube(turned.x_loop), color=LOOP, smooth_shading=True, **GLOSS)
-    point_camera(plotter, common_view([turned], raised=0.0))
+    point_camera(plotter, view)
     return plotter
 
 
@@ -94,5 +95,5 @@ def point_camera(plotter: Any, view: View) -> None:
     plotter.camera.focal_point = tuple(view.focus)
     plotter.camera.position = tuple(view.focus + 5 * view.eye)
     plotter.camera.up = tuple(UP)
-    plotter.camera.parallel_scale = view.half_height
+    plotter.camera.parallel_scale = view.half[1]
     plotter.reset_camera_clipping_range()

@@ -11,17 +11,20 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.shape import Shape
 
 UP = np.array([0.0, 0.0, 1.0])
-# Height over width of every picture.
-ASPECT = 0.75
+# From above, the y axis up in the picture; by so little aslant that nobody sees it.
+ABOVE: FloatArray = np.array([0.0, -1e-3, 1.0]) / np.hypot(1.0, 1e-3)
 LOOP_RADIUS = 0.0035
+# Height over width of a picture lies between these.
+_LOWEST, _HIGHEST = 0.35, 0.75
+# A film is flat if in a picture as wide as it is no pixel of a thousand shows its depth.
+_FLAT = 1e-3
 # Where the eye is if nothing is edge-on to it: slanted, from the front.
 _EYE = np.array([0.2, -0.75, 0.65])
 _SLANTED = 0.4
 # Eyes that see this part of what the best one sees, or more, count as equally good.
 _ALMOST = 0.85
-_MARGIN = 1.28
-# The film is shown above the middle by this part of the half height: the caption is below.
-_RAISED = 0.1
+# Part of half its larger extent that is left free on every side of a shape.
+_MARGIN = 0.16
 # A film that turns is seen from this height above its equator, in degrees.
 _TURN_HEIGHT = 35.0
 
@@ -34,32 +37,65 @@ class View:
     ----------
     eye : (3,) float, unit vector from the film towards the camera
     focus : (3,) float, the middle of the picture, in units of L
-    half_height : float, of the picture, in units of L
+    half : half the width and height of the picture, in units of L
     """
 
     eye: FloatArray
     focus: FloatArray
-    half_height: float
+    half: tuple[float, float]
+
+    def height(self, shape: Shape) -> int:
+        """Return how high above the mean plane of a shape's loop the eye is, in degrees."""
+        sine = min(1.0, abs(float(self.eye @ mean_normal(shape.x_loop))))
+        return round(float(np.degrees(np.arcsin(sine))))
+
+    def words(self, shape: Shape) -> str:
+        """Say from where a shape is seen."""
+        height = self.height(shape)
+        return "seen from above" if height == 90 else f"{height}° above its plane"
+
+    def size(self, width: int) -> tuple[int, int]:
+        """Return width and height of its picture in pixels; both are even, for films."""
+        across, up = self.half
+        return width, 2 * round(0.5 * width * up / across)
 
 
-def common_view(shapes: Sequence[Shape], raised: float = _RAISED) -> View:
+def mean_normal(x_loop: FloatArray) -> FloatArray:
+    """Return the unit normal (3,) of the plane nearest to a loop (n_b, 3), either one."""
+    x = x_loop - x_loop.mean(axis=0)
+    normal: FloatArray = np.linalg.svd(x, full_matrices=False)[2][2]
+    return normal
+
+
+def is_flat(shape: Shape) -> bool:
+    """Whether a shape lies in a plane z = const, as far as a picture can show it."""
+    across, _, depth = np.ptp(shape.x, axis=0)
+    return bool(depth < _FLAT * across)
+
+
+def common_view(shapes: Sequence[Shape]) -> View:
     """Return a view that holds all shapes and sees about the most of the worst seen.
 
-    Of films that turn over little by little, in an animation, no view sees all: each eye
-    has a lobe of one of them edge-on. The shapes are `raised` by this part of half the
-    height, above what is written below.
+    If all are flat it is from above. Of films that turn over little by little, in an
+    animation, no view sees all: each eye has a lobe of one of them edge-on.
     """
-    eyes = _candidate_eyes()
-    seen = np.array([_visible_part(shape, eyes) for shape in shapes])
-    # Against the best there is for each shape: a closed one is seen in part from anywhere.
-    worst = (seen / seen.max(axis=1, keepdims=True)).min(axis=0)
-    good = eyes[worst >= _ALMOST * worst.max()]
-    return _raised(_holding(shapes, good[np.argmax(good @ _EYE)]), raised)
+    return _holding(shapes, _common_eye(shapes))
 
 
-def view_from(shapes: Sequence[Shape], eye: FloatArray, raised: float = _RAISED) -> View:
-    """Return a view from the unit vector `eye` (3,) that holds all shapes, `raised`."""
-    return _raised(_holding(shapes, eye), raised)
+def own_views(shapes: Sequence[Shape]) -> list[View]:
+    """Return a view for each shape, at one scale: a flat film is seen from above.
+
+    So it has its true outline. All others have the eye of their common view.
+    """
+    eye = _common_eye([shape for shape in shapes if not is_flat(shape)])
+    views = [_holding([shape], ABOVE if is_flat(shape) else eye) for shape in shapes]
+    half = _proportioned(*np.max([view.half for view in views], axis=0))
+    return [replace(view, half=half) for view in views]
+
+
+def view_from(shapes: Sequence[Shape], eye: FloatArray) -> View:
+    """Return a view from the unit vector `eye` (3,) that holds all shapes."""
+    return _holding(shapes, eye)
 
 
 def turning_views(shapes: Sequence[Shape], count: int) -> list[View]:
@@ -77,25 +113,39 @@ def turning_views(shapes: Sequence[Shape], count: int) -> list[View]:
     views = [_holding(shapes, eye) for eye in eyes]
     # One focus, or the film would sway as it turns, and room for it on every side.
     focus = np.mean([view.focus for view in views], axis=0)
-    half = max(
-        view.half_height + _MARGIN * float(np.linalg.norm(view.focus - focus))
-        for view in views
-    )
-    return [_raised(replace(view, focus=focus, half_height=half)) for view in views]
+    swayed = [float(np.linalg.norm(view.focus - focus)) for view in views]
+    halves = np.array([view.half for view in views]) + np.array(swayed)[:, None]
+    half = _proportioned(*halves.max(axis=0))
+    return [replace(view, focus=focus, half=half) for view in views]
+
+
+def _common_eye(shapes: Sequence[Shape]) -> FloatArray:
+    if all(is_flat(shape) for shape in shapes):
+        return ABOVE
+    eyes = _candidate_eyes()
+    seen = np.array([_visible_part(shape, eyes) for shape in shapes])
+    # Against the best there is for each shape: a closed one is seen in part from anywhere.
+    worst = (seen / seen.max(axis=1, keepdims=True)).min(axis=0)
+    good = eyes[worst >= _ALMOST * worst.max()]
+    eye: FloatArray = good[np.argmax(good @ _EYE)]
+    return eye
 
 
 def _holding(shapes: Sequence[Shape], eye: FloatArray) -> View:
     axes = _screen(eye)
     flat = np.concatenate([shape.x for shape in shapes]) @ axes
     low, high = flat.min(axis=0), flat.max(axis=0)
-    half_width, half_height = 0.5 * (high - low) + LOOP_RADIUS
-    half = float(max(half_height, half_width * ASPECT))
-    return View(eye, axes @ (0.5 * (low + high)), _MARGIN * half)
+    across, up = 0.5 * (high - low) + LOOP_RADIUS
+    margin = _MARGIN * max(across, up)
+    return View(
+        eye, axes @ (0.5 * (low + high)), _proportioned(across + margin, up + margin)
+    )
 
 
-def _raised(view: View, part: float = _RAISED) -> View:
-    down = -part * view.half_height * _screen(view.eye)[:, 1]
-    return replace(view, focus=view.focus + down)
+def _proportioned(across: float, up: float) -> tuple[float, float]:
+    """Return half a width and height that hold both and suit a picture."""
+    across = max(float(across), float(up) / _HIGHEST)
+    return across, max(float(up), _LOWEST * across)
 
 
 def _screen(eye: FloatArray) -> FloatArray:

@@ -6,6 +6,12 @@ class Diagram {
     "#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
   ];
 
+  // What tells curves apart in grey, and how large it is to look as large as the others.
+  static MARKERS = [
+    { style: "circle", radius: 2.5, sign: "●" }, { style: "rect", radius: 3, sign: "■" },
+    { style: "triangle", radius: 3.5, sign: "▲" }, { style: "rectRot", radius: 3.5, sign: "◆" },
+  ];
+
   // Points closer than this on the screen (pixels) are taken for one place.
   static TOGETHER = 1;
 
@@ -21,8 +27,10 @@ class Diagram {
       this.groups.get(key).push(curve);
     }
     [...this.groups.values()].forEach((alike, place) => {
+      // As 7 and 4 have no factor in common, 28 groups have looks of their own.
       const colour = Diagram.COLOURS[place % Diagram.COLOURS.length];
-      for (const curve of alike) curve.colour = colour;
+      const marker = place % Diagram.MARKERS.length;
+      for (const curve of alike) Object.assign(curve, { colour, marker });
     });
     this.ring = {
       data: [], order: -curves.length - 2, clip: 12, pointRadius: 10, pointBorderWidth: 3, pointHitRadius: 0,
@@ -60,6 +68,7 @@ class Diagram {
 
   static dataset(curve, place) {
     const rows = curve.drawn.map((place) => curve.run.rows[place]);
+    const { style, radius } = Diagram.MARKERS[curve.marker];
     const borrowed = (point) => curve.origin !== null && point === 0;
     return {
       showLine: true,
@@ -77,9 +86,9 @@ class Diagram {
       pointBorderColor: curve.colour,
       pointBackgroundColor: rows.map((row) =>
         row.n_unstable === 0 ? curve.colour : "#ffffff"),
-      pointStyle: rows.map((row) => (row.status === "converged" ? "circle" : "crossRot")),
+      pointStyle: rows.map((row) => (row.status === "converged" ? style : "crossRot")),
       pointRadius: rows.map((row, point) =>
-        borrowed(point) || row.special !== null ? 0 : row.status === "converged" ? 2.5 : 5),
+        borrowed(point) || row.special !== null ? 0 : row.status === "converged" ? radius : 5),
     };
   }
 

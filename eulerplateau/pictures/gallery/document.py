@@ -9,21 +9,26 @@ import math
 import re
 from collections.abc import Sequence
 from importlib.resources import files
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
+from eulerplateau.mesh.drawing import ABOVE, BACK, FRONT, LOOP, is_flat, mean_normal
 from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.wire import Wire, read_wire
-from eulerplateau.runs import Series
+from eulerplateau.runs import Run, Series, without_noise
 
 # Beyond what is drawn, and at most 1e-5 L away from it: 16 bits for a loop of length 1.
 _INT16 = 32767
 # A mark's direction, to half a degree round the wire.
 _INT8 = 127
+# To less than a tenth of a degree.
+_NORMAL_DIGITS = 4
 _DIGITS = 10
 _SCRIPTS = ("quantities", "data", "film", "diagram", "main")
 
@@ -56,9 +61,10 @@ def _data(gallery: Gallery) -> dict[str, Any]:
     first = gallery.exhibits[0].run
     stage = pictures_of(first.kind).stage
     size = max(float(np.abs(shown.x).max()) for shown in gallery.exhibits)
+    eye = _first_eye(gallery, stage.eye)
     # Across and up the first view, in which z points up.
-    across = np.cross([0.0, 0.0, 1.0], stage.eye)
-    screen = np.stack([across, np.cross(stage.eye, across)], axis=1)
+    across = np.cross([0.0, 0.0, 1.0], eye)
+    screen = np.stack([across, np.cross(eye, across)], axis=1)
     screen /= np.linalg.norm(screen, axis=0)
     seen = [np.abs(shown.x @ screen).max(axis=(0, 1)) for shown in gallery.exhibits]
     unit = size / _INT16 or 1.0
@@ -73,12 +79,24 @@ def _data(gallery: Gallery) -> dict[str, Any]:
         "loadUnit": first.load.unit,
         "unit": unit,
         "size": stage.size,
-        "eye": stage.eye.tolist(),
+        "eye": eye.tolist(),
+        "length": stage.length,
+        "colours": [_hexadecimal(colour) for colour in (FRONT, BACK, LOOP)],
         "halfSize": np.max(seen, axis=0).tolist(),
         "meshes": [_mesh(mesh) for mesh in gallery.meshes],
         "radius": max(max(run["radii"]) for run in made),
         "runs": made,
     }
+
+
+def _first_eye(gallery: Gallery, eye: FloatArray) -> FloatArray:
+    """Return from where shapes are seen at first: from above if all are flat."""
+    flat = all(
+        is_flat(Shape(x, shown.shapes.triangles(place), shown.shapes.loop))
+        for shown in gallery.exhibits
+        for place, x in enumerate(shown.x)
+    )
+    return ABOVE if flat else eye
 
 
 def _mesh(mesh: Mesh) -> dict[str, Any]:
@@ -104,8 +122,28 @@ def _run(
         "radii": [float(f"{size * wire.radius:.{_DIGITS}g}") for wire in wires],
         "series": [_series(series) for series in run.series],
         "special": run.special,
-        "rows": [[_value(_shown(row, name)) for name in columns] for row in run.rows],
+        "normals": [
+            np.round(mean_normal(x[shapes.loop]), _NORMAL_DIGITS).tolist() for x in shown.x
+        ],
+        "rows": [
+            [_value(cells[name]) for name in columns] for cells in _cells(run, columns)
+        ],
     }
+
+
+def _cells(run: Run, columns: Sequence[str]) -> list[dict[str, Any]]:
+    """Return the cells of every row, by column; what is noise of a flat shape is zero."""
+    kind = pictures_of(run.kind)
+    cells = [{name: _shown(row, name) for name in columns} for row in run.rows]
+    for name, error in kind.errors.items():
+        for series in run.series:
+            values = without_noise(series.rows, series.values(attrgetter(name)), error)
+            borrowed = series.start is not None
+            for place, value in enumerate(values[borrowed:], series.first):
+                row = run.rows[place]
+                noise = kind.flat(row) and abs(value) <= error(row)
+                cells[place][name] = 0.0 if noise else float(value)
+    return cells
 
 
 def _shown(row: Any, name: str) -> Any:
@@ -149,6 +187,11 @@ def _value(value: Any) -> Any:
     if isinstance(value, float):
         return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
     return getattr(value, "value", value)
+
+
+def _hexadecimal(colour: Sequence[float]) -> str:
+    """Return a colour (3,), 0 to 1, as HTML has it."""
+    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
 
 
 def _base64(array: NDArray[Any]) -> str:

@@ -2,40 +2,44 @@
 // stripe; one scale for all shapes.
 
 class Film {
-  static FRONT = "#6FB1DE";
-  static BACK = "#F0A35E";
-  static LOOP = "#2B2B2B";
   static STRIPE = "#F7F7F7";
 
-  // `eye` points from the film to the camera; at first it sees `halfSize` [across, up], in
+  // A scale bar is about so wide, in pixels, and one of these parts of the unit of length.
+  static BAR = 64;
+  static PARTS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+
+  // `colours` are those of front, back and loop. `eye` points from the film to the camera; at first it sees `halfSize` [across, up], in
   // the unit in which `size` is the length of a loop; no tube is thicker than `radius`.
-  constructor(canvas, { eye, halfSize, size, radius }) {
+  constructor(canvas, { colours, eye, halfSize, size, radius }, onView) {
     const L = Libraries;
+    const [front, back, loop] = colours;
+    this.onView = onView;
     this.halfSize = halfSize;
     this.largestRadius = radius;
     this.canvas = canvas;
     this.renderer = new L.WebGLRenderer({ canvas, antialias: true });
     this.renderer.setClearColor("#ffffff");
     this.scene = new L.Scene();
-    this.scene.add(new L.AmbientLight("#ffffff", 1.7));
+    this.scene.add(new L.AmbientLight("#ffffff", 2.2));
     // Parallel rays and no perspective, so that sizes compare.
     this.camera = new L.OrthographicCamera(-1, 1, 1, -1, 0, 2 * size);
     this.camera.up.set(0, 0, 1);
-    const light = new L.DirectionalLight("#ffffff", 1.6);
+    const light = new L.DirectionalLight("#ffffff", 0.95);
     light.position.set(0, 0, 1);
     this.camera.add(light, light.target);
     this.scene.add(this.camera);
     this.parts = [];
-    for (const [color, side] of [[Film.FRONT, L.FrontSide], [Film.BACK, L.BackSide]]) {
+    for (const [color, side] of [[front, L.FrontSide], [back, L.BackSide]]) {
       const material = new L.MeshPhongMaterial({ color, side, specular: "#222222" });
       this.parts.push(new L.Mesh(new L.BufferGeometry(), material));
     }
     this.tube = new L.Mesh(
-      new L.BufferGeometry(), new L.MeshPhongMaterial({ color: Film.LOOP }));
+      new L.BufferGeometry(), new L.MeshPhongMaterial({ color: loop }));
     this.stripe = new L.Mesh(
       new L.BufferGeometry(), new L.MeshPhongMaterial({ color: Film.STRIPE }));
     this.scene.add(...this.parts, this.tube, this.stripe);
-    this.camera.position.fromArray(eye).setLength(size); // beyond any film
+    this.far = size; // beyond any film
+    this.camera.position.fromArray(eye).setLength(this.far);
     this.controls = new L.OrbitControls(this.camera, canvas);
     this.controls.minZoom = 0.5;
     this.controls.maxZoom = 50;
@@ -86,6 +90,49 @@ class Film {
     this.controls.reset();
   }
 
+  // From above the plane next to the shape, whose `normal` is of either sign; all of it.
+  above(normal) {
+    const way = new Libraries.Vector3().fromArray(normal);
+    if (way.dot(this.camera.position) < 0) way.negate();
+    this.camera.position.copy(this.controls.target).addScaledVector(way, this.far);
+    this.controls.update();
+    this.camera.zoom = Math.min(this.camera.zoom, this.room());
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  // The zoom at which all of the shape is just in the picture.
+  room() {
+    this.camera.updateMatrixWorld();
+    const points = this.parts[0].geometry.getAttribute("position");
+    const point = new Libraries.Vector3();
+    let [across, up] = [0, 0];
+    for (let v = 0; v < points.count; v++) {
+      point.fromBufferAttribute(points, v).applyMatrix4(this.camera.matrixWorldInverse);
+      across = Math.max(across, Math.abs(point.x));
+      up = Math.max(up, Math.abs(point.y));
+    }
+    const { right, top } = this.camera;
+    const free = 1.05 * this.largestRadius;
+    return Math.min(right / (1.05 * across + free), top / (1.05 * up + free));
+  }
+
+  // How high above that plane the eye is, in degrees.
+  height(normal) {
+    const way = this.camera.getWorldDirection(new Libraries.Vector3());
+    const sine = Math.abs(way.dot(new Libraries.Vector3().fromArray(normal)));
+    return Math.round(Math.asin(Math.min(1, sine)) * 180 / Math.PI);
+  }
+
+  // A length that is about as long as BAR: into how many parts the unit of length is to be
+  // divided for it, and how many pixels it takes.
+  bar() {
+    const { left, right, zoom } = this.camera;
+    const pixels = this.canvas.clientWidth * zoom / (right - left);
+    const parts = Film.PARTS.find((count) => pixels / count <= Film.BAR) ?? Film.PARTS.at(-1);
+    return { parts, pixels: pixels / parts };
+  }
+
   fit() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!width || !height) return;
@@ -103,5 +150,6 @@ class Film {
 
   draw() {
     this.renderer.render(this.scene, this.camera);
+    this.onView();
   }
 }

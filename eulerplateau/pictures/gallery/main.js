@@ -20,6 +20,7 @@ function show(curve, place) {
   Object.assign(document.body.dataset, {
     run: curve.run.name, series: curve.name, step: row.step,
   });
+  makeScale();
   film?.show(
     curve.run.mesh, triangles(curve.run, place), positions(gallery, curve.run, place),
     marks(curve.run, place), curve.run.radii[place]);
@@ -33,6 +34,20 @@ function show(curve, place) {
     ...quantities.map(({ key, label, unit }) => line(label, row[key], unit)),
   );
   find("special").textContent = aboutSpecial(curve.run.special[row.special]);
+}
+
+// How long things are, and from where they are seen.
+function makeScale() {
+  if (!film || !shown) return;
+  const { parts, pixels } = film.bar();
+  find("bar").style.width = `${pixels}px`;
+  find("length").textContent = parts === 1 ? gallery.length : `${gallery.length}/${parts}`;
+  const height = film.height(normal());
+  find("angle").textContent = height === 90 ? "seen from above" : `${height}° above its plane`;
+}
+
+function normal() {
+  return shown.curve.run.normals[shown.place];
 }
 
 function text(value, digits) {
@@ -92,7 +107,8 @@ function makeLegend() {
     box.addEventListener("change", () =>
       alike.forEach((curve) => diagram.setVisible(curve, box.checked)));
     const dash = document.createElement("i");
-    dash.style.background = first.colour;
+    dash.style.color = first.colour;
+    dash.textContent = Diagram.MARKERS[first.marker].sign;
     label.append(box, dash, several ? first.run.name : groupName(alike));
     find("legend").append(label);
   }
@@ -144,11 +160,13 @@ find("place").addEventListener("input", (event) =>
   show(shown.curve, shown.curve.first + Number(event.target.value)));
 find("show-all").addEventListener("click", () => diagram.whole());
 find("view").addEventListener("click", () => film?.firstView());
+find("above").addEventListener("click", () => film?.above(normal()));
 
 const diagram = new Diagram(find("chart"), all, pick);
 try {
-  film = new Film(find("film"), gallery);
+  film = new Film(find("film"), gallery, makeScale);
 } catch {
+  find("scale").hidden = true;
   find("no-webgl").hidden = false;
 }
 makeLegend();

@@ -1,3 +1,4 @@
+from .animations import GIF as GIF, MP4 as MP4, check_format as check_format
 from .choice import chosen_steps as chosen_steps
 from .colours import SIDES as SIDES, SOAP as SOAP
 from .drawing import (

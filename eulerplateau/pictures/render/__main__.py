@@ -1,4 +1,7 @@
-"""The child that renders: `python -m eulerplateau.pictures.render DIR KIND COLOUR STEP`."""
+"""The child that renders, started by `draw_shapes`.
+
+Its arguments are `DIR KIND FORMAT COLOUR STEP...`.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,11 @@ from pathlib import Path
 from eulerplateau.pictures.render import STILLS, TURN, RunPictures
 
 if __name__ == "__main__":
-    folder, kind, colour, *steps = sys.argv[1:]
+    folder, kind, form, colour, *steps = sys.argv[1:]
     pictures = RunPictures.read(Path(folder), [int(step) for step in steps], colour or None)
     if kind == STILLS:
         pictures.stills()
     elif kind == TURN:
-        pictures.turns()
+        pictures.turns(form)
     else:
-        pictures.sweep()
+        pictures.sweep(form)

@@ -20,8 +20,9 @@ from eulerplateau.pictures.figure import FieldLook, load_matplotlib
 SIDES, SOAP = "sides", "soap"
 _GREY_FRONT, _GREY_BACK = np.full(3, 0.93), np.full(3, 0.72)
 # The back of a film coloured by a field is this much darker.
-_DARKER = 0.65
-_AMBIENT, _SHINE = 0.5, 25
+_DARKER = 0.8
+# So much that the back, the lighter colour, is lighter in grey too however it lies.
+_AMBIENT, _SHINE = 0.7, 25
 # Light changes the colours of a field less, or they could not be read off the bar.
 _AMBIENT_OF_FIELD = 0.75
 # Opacity of soap film seen straight on; seen aslant there is more of it in the way.
@@ -38,7 +39,7 @@ class Scale:
     ----------
     label : str, the field as it is written beside the colour bar
     low, high : float; values beyond take the colours of the ends
-    colours : str, matplotlib's name of the map: diverging about 0, or sequential
+    colours : str, matplotlib's name of the map, of one that ascends in lightness
     """
 
     label: str
@@ -72,7 +73,8 @@ def scale_of(
     low, high = float(np.min(ranges)), float(np.max(ranges))
     if look.signed:
         half = max(-low, high, _FINEST)
-        return Scale(look.label, -half, half, "coolwarm")
+        # Blue, grey at zero, yellow; in grey from dark to light.
+        return Scale(look.label, -half, half, "cividis")
     return Scale(look.label, low, max(high, low + _FINEST), "viridis")
 
 

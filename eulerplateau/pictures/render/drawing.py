@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from eulerplateau.mesh.drawing import draw_in_child
+from eulerplateau.pictures.render.animations import GIF
 
 STILLS, TURN, SWEEP = "stills", "turn", "sweep"
 # A driver that hangs is given up after this, and so much per frame.
@@ -17,14 +18,18 @@ _SECONDS, _SECONDS_PER_STEP = 120.0, {STILLS: 2.0, TURN: 60.0, SWEEP: 2.0}
 
 
 def draw_shapes(
-    folder: Path, steps: Sequence[int], kind: str = STILLS, colour: str | None = None
+    folder: Path,
+    steps: Sequence[int],
+    kind: str = STILLS,
+    colour: str | None = None,
+    form: str = GIF,
 ) -> bool:
     """Draw the shapes of `steps` in a child process; return whether all were drawn.
 
     `kind` is STILLS, TURN (an animation of each shape) or SWEEP (one of all shapes) and
     `colour` SIDES, SOAP or a scalar field of the shape files; by default what such runs
-    are coloured by, films by SIDES. A child that fails or
-    crashes is logged and never raises here.
+    are coloured by, films by SIDES. An animation is of a format `form`, GIF or MP4. A child
+    that fails or crashes is logged and never raises here.
     """
     if not steps:
         return True
@@ -34,6 +39,7 @@ def draw_shapes(
         "eulerplateau.pictures.render",
         str(folder),
         kind,
+        form,
         colour or "",
         *chosen,
         timeout=timeout,

@@ -12,6 +12,8 @@ from eulerplateau.mesh import Shape, write_whole
 from eulerplateau.mesh.drawing import View, turning_views
 from eulerplateau.pictures.kinds import Stage
 from eulerplateau.pictures.of_run import pictures_of
+from eulerplateau.pictures.render.animations import GIF, animation
+from eulerplateau.pictures.render.captions import Caption, captioned, text_of
 from eulerplateau.pictures.render.choice import chosen_steps
 from eulerplateau.pictures.render.colours import (
     SIDES,
@@ -22,14 +24,15 @@ from eulerplateau.pictures.render.colours import (
     scale_of,
 )
 from eulerplateau.pictures.render.fields import read_field
-from eulerplateau.pictures.render.pages import caption, captioned, contact_sheet, gif, png
+from eulerplateau.pictures.render.pages import contact_sheet, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
 from eulerplateau.pictures.wire import read_wire
 from eulerplateau.runs import Run, read_run
 
 _WIDTH, _FRAME_WIDTH = 1200, 640
 _TURN_FRAMES = 48
-_MILLISECONDS, _HOLD = 80, 1000
+# How long a frame is shown, and how many times that where a branch or leg ends.
+_MILLISECONDS, _HOLD = 80, 12
 
 
 @dataclass(frozen=True)
@@ -85,40 +88,41 @@ class RunPictures:
     def stills(self) -> None:
         """Draw shape_*.png and, of several, a contact sheet, sheet.png.
 
-        The view is that of the whole run, so that pictures made at different times compare.
+        The views are those of the whole run, so that pictures made at different times
+        compare.
         """
         shapes = self.stage.aligned(self.shapes)
-        view = self.stage.view(shapes)
+        views = self.stage.views(shapes)
         images = []
-        with Scene(_WIDTH) as scene:
+        with Scene(_WIDTH, views[0]) as scene:
             for place in self.places:
-                images.append(self._picture(scene, place, shapes[place], view))
+                images.append(self._picture(scene, place, shapes[place], views[place]))
                 self._write(f"shape_{self._step(place):04d}", "png", png(images[-1]))
         if len(images) > 1:
             self._write("sheet", "png", contact_sheet(images))
 
-    def turns(self) -> None:
-        """Draw turn_*.gif: each shape once around, all in one scale."""
+    def turns(self, form: str = GIF) -> None:
+        """Draw turn_*.gif, or .mp4: each shape once around, all in one scale."""
         shapes = self.stage.aligned(self.shapes)
         views = turning_views(shapes, _TURN_FRAMES)
-        with Scene(_FRAME_WIDTH) as scene:
+        with Scene(_FRAME_WIDTH, views[0]) as scene:
             for place in self.places:
                 shape = shapes[place]
                 frames = [self._picture(scene, place, shape, view) for view in views]
-                content = gif(frames, [_MILLISECONDS] * len(frames))
-                self._write(f"turn_{self._step(place):04d}", "gif", content)
+                content = animation(form, frames, _MILLISECONDS, [1] * len(frames))
+                self._write(f"turn_{self._step(place):04d}", form, content)
 
-    def sweep(self) -> None:
-        """Draw sweep.gif: the shapes in sequence, held where a branch or leg ends."""
+    def sweep(self, form: str = GIF) -> None:
+        """Draw sweep.gif, or .mp4: the shapes in sequence, held where a curve ends."""
         view = self.stage.view(self.shapes)
         ends = {series.last for series in self.run.series} | {self.places[-1]}
-        with Scene(_FRAME_WIDTH) as scene:
+        with Scene(_FRAME_WIDTH, view) as scene:
             frames = [
                 self._picture(scene, place, self.shapes[place], view)
                 for place in self.places
             ]
-        times = [_HOLD if place in ends else _MILLISECONDS for place in self.places]
-        self._write("sweep", "gif", gif(frames, times))
+        times = [_HOLD if place in ends else 1 for place in self.places]
+        self._write("sweep", form, animation(form, frames, _MILLISECONDS, times))
 
     def _step(self, place: int) -> int:
         return int(self.run.rows[place].step)
@@ -129,7 +133,10 @@ class RunPictures:
         wire = read_wire(self.run.shape_path(self.run.rows[place]), shape)
         colours = loop_colours(shape, values, self.scale)
         pixels = scene.pixels(shape, film, colours, wire, view)
-        return captioned(pixels, caption(self.run.rows[place]), self.scale)
+        length, name = self.stage.bar
+        bar = 0.5 * length / view.half[0], name
+        text = text_of(self.run.rows[place])
+        return captioned(pixels, Caption(text, view.words(shape), bar, self.scale))
 
     def _write(self, name: str, suffix: str, content: bytes) -> None:
         pictures = self.run.folder / "pictures"

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
 from eulerplateau.mesh.drawing import (
-    ASPECT,
     GLOSS,
     View,
     load_pyvista,
@@ -31,14 +30,16 @@ Pixels = NDArray[np.uint8]
 class Scene:
     """A window that nobody sees; it is opened once for many pictures, in a `with`.
 
+    It is as high as suits a view; all others have its scale.
+
     Needs an off-screen OpenGL: without one VTK crashes the process instead of raising.
     """
 
-    def __init__(self, width: int) -> None:
+    def __init__(self, width: int, view: View) -> None:
         # First, since pyvista imports it whatever MPLBACKEND says.
         load_matplotlib()
         pyvista = load_pyvista()
-        size = [width, round(ASPECT * width)]
+        size = list(view.size(width))
         plotter: Any = pyvista.Plotter(off_screen=True, window_size=size, lighting="none")
         plotter.set_background("white")
         plotter.enable_anti_aliasing("ssaa")

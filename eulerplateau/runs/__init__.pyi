@@ -12,6 +12,8 @@ from .cell_table import CellBranchRow as CellBranchRow, CellRow as CellRow
 from .examples import write_examples as write_examples
 from .exploration import Exploration as Exploration, run_branches as run_branches
 from .kinds import Kind as Kind
+from .live_film import LiveFilm as LiveFilm
+from .live_values import Varied as Varied
 from .locus import run_locus as run_locus
 from .locus_record import Asked as Asked, Locus as Locus
 from .phase_diagram import run_phase_diagram as run_phase_diagram
@@ -45,3 +47,4 @@ from .sweep import (
     conflict as conflict,
     run_sweep as run_sweep,
 )
+from .visited import Visited as Visited

@@ -28,6 +28,7 @@ ROOMS = (
     "cells",
     "runs",
     "pictures",
+    "live",
 )
 LEVEL = {room: level for level, room in enumerate([*ROOMS, "cli"])}
 GROUND = {

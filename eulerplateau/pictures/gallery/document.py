@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import json
-import math
 import re
 from collections.abc import Sequence
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eulerplateau.mesh import Shape
 from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
+from eulerplateau.pictures.gallery.parts import DIGITS, base64_of, cell_of, part
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.wire import Wire, read_wire
 from eulerplateau.runs import Series
@@ -24,7 +21,6 @@ from eulerplateau.runs import Series
 _INT16 = 32767
 # A mark's direction, to half a degree round the wire.
 _INT8 = 127
-_DIGITS = 10
 _SCRIPTS = ("quantities", "data", "film", "diagram", "main")
 
 
@@ -37,19 +33,15 @@ def page(gallery: Gallery) -> bytes:
     title = ", ".join(shown.run.name for shown in gallery.exhibits)
     parts = {
         "title": html.escape(title),
-        "licences": _part("vendor/LICENSES.txt"),
-        "style": _part("style.css"),
-        "libraries": _part("vendor/libraries.min.js"),
+        "licences": part("vendor/LICENSES.txt"),
+        "style": part("style.css"),
+        "libraries": part("vendor/libraries.min.js"),
         # "<" could end the script it stands in; in JSON it occurs inside texts only.
         "data": json.dumps(_data(gallery), allow_nan=False).replace("<", "\\u003c"),
-        "scripts": "".join(_part(f"{name}.js") for name in _SCRIPTS),
+        "scripts": "".join(part(f"{name}.js") for name in _SCRIPTS),
     }
-    template = _part("page.html")
+    template = part("page.html")
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template).encode()
-
-
-def _part(name: str) -> str:
-    return files("eulerplateau.pictures.gallery").joinpath(name).read_text(encoding="utf-8")
 
 
 def _data(gallery: Gallery) -> dict[str, Any]:
@@ -84,8 +76,8 @@ def _data(gallery: Gallery) -> dict[str, Any]:
 def _mesh(mesh: Mesh) -> dict[str, Any]:
     return {
         "vertices": mesh.n_v,
-        "triangles": _base64(mesh.triangles.astype("<u4")),
-        "loop": _base64(mesh.loop.astype("<u4")),
+        "triangles": base64_of(mesh.triangles.astype("<u4")),
+        "loop": base64_of(mesh.loop.astype("<u4")),
     }
 
 
@@ -97,14 +89,14 @@ def _run(
         "name": run.name,
         "mesh": shown.mesh,
         "tilings": [
-            [first, _base64(tiles.astype("<u4"))] for first, tiles in shapes.tilings[1:]
+            [first, base64_of(tiles.astype("<u4"))] for first, tiles in shapes.tilings[1:]
         ],
-        "shapes": _base64(np.rint(shown.x / unit).astype("<i2")),
+        "shapes": base64_of(np.rint(shown.x / unit).astype("<i2")),
         "marks": _marks(wires),
-        "radii": [float(f"{size * wire.radius:.{_DIGITS}g}") for wire in wires],
+        "radii": [float(f"{size * wire.radius:.{DIGITS}g}") for wire in wires],
         "series": [_series(series) for series in run.series],
         "special": run.special,
-        "rows": [[_value(_shown(row, name)) for name in columns] for row in run.rows],
+        "rows": [[cell_of(_shown(row, name)) for name in columns] for row in run.rows],
     }
 
 
@@ -131,7 +123,7 @@ def _marks(wires: Sequence[Wire]) -> str | None:
     drawn = [wire.marks for wire in wires if wire.marks is not None]
     if len(drawn) < len(wires):
         return None
-    return _base64(np.rint(_INT8 * np.stack(drawn)).astype("i1"))
+    return base64_of(np.rint(_INT8 * np.stack(drawn)).astype("i1"))
 
 
 def _series(series: Series) -> dict[str, Any]:
@@ -142,14 +134,3 @@ def _series(series: Series) -> dict[str, Any]:
         "last": series.last,
         "origin": series.start,
     }
-
-
-def _value(value: Any) -> Any:
-    """Return a cell as JSON has it: null for what is not computed or not finite."""
-    if isinstance(value, float):
-        return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
-    return getattr(value, "value", value)
-
-
-def _base64(array: NDArray[Any]) -> str:
-    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -50,6 +50,7 @@ class LiveFilm:
         self._random = np.random.default_rng(spec.start.seed)
         self.varied = varied_by(spec)
         self._values = {each.key: each.value for each in self.varied}
+        self._varied = {each.parameter for each in self.varied}
         self._left: Equilibrium | None = None
         self._steps = 0
         self.begin()
@@ -137,7 +138,7 @@ class LiveFilm:
         problem, _ = self._at_values()
         row_type, own = self._row_type, self._own
         told = tell(problem, found, self._measurer, self._steps, row_type, **own)
-        here = _Rates.of(problem, found, told.row)
+        here = _Rates.of(problem, found, told.row, self._varied)
         jumped = False
         if way in ("follow", "kick") and self._found.is_minimum:
             jumped = here.lost_since(self._rates) > _LOST * abs(found.energy)
@@ -192,12 +193,20 @@ class _Rates:
     rates: Mapping[str, tuple[float, float]]
 
     @classmethod
-    def of(cls, problem: Problem, found: Equilibrium, row: Row) -> _Rates:
-        """Return those of an equilibrium: by the load, what the film has at load 1."""
-        unit = problem.film.energy_gradient(found.shape, 1.0)[0]
-        rates = {"load": (found.load, unit)}
-        for name, value in problem.loop.parameters.items():
-            rates[name] = value, LOOP_PARAMETERS[name].energy_rate(row)
+    def of(
+        cls, problem: Problem, found: Equilibrium, row: Row, varied: Iterable[str]
+    ) -> _Rates:
+        """Return those of an equilibrium, by these parameters of its problem.
+
+        The energy of the film is proportional to the load: that by it is the film's at 1.
+        """
+        rates = {}
+        for name in varied:
+            if name == "load":
+                rate = problem.film.energy_gradient(found.shape, 1.0)[0]
+            else:
+                rate = LOOP_PARAMETERS[name].energy_rate(row)
+            rates[name] = problem.value(name, found.load), rate
         return cls(found.energy, rates)
 
     def lost_since(self, before: _Rates) -> float:

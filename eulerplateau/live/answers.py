@@ -20,7 +20,7 @@ _UNIT = 0.5 / 32767
 # A mark's direction, to half a degree round the wire.
 _INT8 = 127
 # What is seen across and up at first, in units of L: the longest films are eights.
-_HALF_SIZE = 0.26, 0.2
+_HALF_SIZE = 0.25, 0.17
 
 
 class Stage:

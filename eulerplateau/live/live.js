@@ -153,15 +153,15 @@ function setAxes() {
 }
 
 function makeLegend() {
-  const entries = Object.values(VisitedDiagram.KINDS).map(({ colour, label }) => {
-    const entry = document.createElement("span");
-    const dash = document.createElement("i");
-    dash.style.background = colour;
-    entry.append(dash, label);
+  const entries = Object.values(VisitedDiagram.KINDS).map(({ colour, glyph, label }) => {
+    const [entry, mark] = [document.createElement("span"), document.createElement("b")];
+    mark.style.color = colour;
+    mark.textContent = glyph;
+    entry.append(mark, label);
     return entry;
   });
   const words = document.createElement("span");
-  words.textContent = "filled: stable; open: unstable or not known; dashed: a jump";
+  words.textContent = "open: unstable or not known; dashed: a jump";
   find("legend").replaceChildren(...entries, words);
 }
 

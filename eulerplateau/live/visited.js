@@ -3,10 +3,10 @@
 class VisitedDiagram {
   // Okabe and Ito's colours, which the colour-blind can tell apart.
   static KINDS = {
-    rising: { colour: "#0072B2", style: "triangle", label: "rising" },
-    falling: { colour: "#D55E00", style: "rectRot", label: "falling" },
-    put: { colour: "#009E73", style: "circle", label: "kicked, sought or begun" },
-    failed: { colour: "#D00000", style: "crossRot", label: "not converged" },
+    rising: { colour: "#0072B2", style: "triangle", glyph: "▲", label: "rising" },
+    falling: { colour: "#D55E00", style: "rectRot", glyph: "◆", label: "falling" },
+    put: { colour: "#009E73", style: "circle", glyph: "●", label: "put there" },
+    failed: { colour: "#D00000", style: "crossRot", glyph: "×", label: "not converged" },
   };
 
   // As many as the server remembers.

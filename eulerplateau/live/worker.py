@@ -67,7 +67,7 @@ class Worker:
         self.failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name="live film", daemon=True)
 
-    def start(self, tell: Callable[[Done], None]) -> None:
+    def start(self, tell: Callable[[Done], object]) -> None:
         """Begin to carry out wishes."""
         self._tell = tell
         self._thread.start()

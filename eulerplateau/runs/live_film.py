@@ -17,7 +17,7 @@ from eulerplateau.runs.kinds import film_kind
 from eulerplateau.runs.live_shapes import new_shape_file
 from eulerplateau.runs.live_values import varied_by
 from eulerplateau.runs.parameters import BENCH, LOOP_PARAMETERS
-from eulerplateau.runs.recording import tell
+from eulerplateau.runs.recording import Told, tell
 from eulerplateau.runs.rows import Row
 from eulerplateau.runs.shape_files import write_shape
 from eulerplateau.runs.spec import RunSpec
@@ -40,7 +40,18 @@ class LiveFilm:
 
     It is for one thread. Whatever the solver comes to is shown, and gone on from, as in a
     sweep; the status says what it is.
+
+    Attributes
+    ----------
+    varied : what may be varied
+    at : where it is
     """
+
+    at: Visited
+    _problem: Problem
+    _found: Equilibrium
+    _rates: _Rates
+    _told: Told[Row]
 
     def __init__(self, spec: RunSpec) -> None:
         """Find the film at the first value of the run; raises SpecError, MeshError."""

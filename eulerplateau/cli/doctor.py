@@ -81,7 +81,7 @@ def doctor() -> int:
     """
     checks: Sequence[Callable[[], Finding]] = (
         _python, _folder, _solving, _meshing, _diagrams, _renders, _clone, _browser,
-        _cores, _dask, _parquet, _pandas, _evolver,
+        _live, _cores, _dask, _parquet, _pandas, _evolver,
     )  # fmt: skip
     code = 0
     with ThreadPoolExecutor() as pool:  # most of them wait for a child
@@ -151,6 +151,10 @@ def _browser() -> Finding:
     found = next((name for name in _BROWSERS if shutil.which(name)), "")
     problem = "no browser here: open the page on another machine, it is one file"
     return Finding("the gallery in a browser", "" if found else problem, found, False)
+
+
+def _live() -> Finding:
+    return _extra("a film that follows (live)", "aiohttp", "'eulerplateau[live]'")
 
 
 def _cores() -> Finding:

@@ -12,13 +12,15 @@ class VisitedDiagram {
   // As many as the server remembers.
   static REMEMBERED = 3000;
 
-  // Milliseconds between two drawings: the film is more urgent.
+  // Milliseconds between two drawings, and how often as long as one took: the film is more
+  // urgent.
   static PAUSE = 150;
+  static REST = 5;
 
   constructor(canvas, varied) {
     this.points = [];
     this.varied = varied;
-    this.drawnAt = 0;
+    this.next = 0; // when it may be drawn again
     this.fits = true; // until somebody zooms or moves it
     const free = () => { this.fits = false; };
     const kinds = Object.entries(VisitedDiagram.KINDS);
@@ -105,13 +107,15 @@ class VisitedDiagram {
 
   drawSoon() {
     if (this.waiting) return;
-    const wait = this.drawnAt + VisitedDiagram.PAUSE - performance.now();
     this.waiting = setTimeout(() => {
+      const begun = performance.now();
       this.waiting = null;
       if (this.fits) this.whole();
       else this.chart.update("none");
-      this.drawnAt = performance.now();
-    }, Math.max(wait, 0));
+      const now = performance.now();
+      const took = now - begun;
+      this.next = now + Math.max(VisitedDiagram.PAUSE, VisitedDiagram.REST * took);
+    }, Math.max(this.next - performance.now(), 0));
   }
 
   // Show all of it, with a margin.

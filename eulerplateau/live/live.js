@@ -15,6 +15,10 @@ let asked = 0; // numbers what is asked
 const askedAt = new Map(); // when a slider asked
 let held = null; // the key of the slider that is held
 let socket = null;
+const cells = new Map(); // of the numbers, by their keys
+let last = null; // the row that is to be shown
+let pausing = null; // until numbers are shown again
+const PAUSE = 100; // milliseconds
 
 function connect() {
   socket = new WebSocket(new URL("talk", location.href.replace(/^http/, "ws")));
@@ -116,13 +120,25 @@ function showPoints({ points, asker }) {
       find("headline").textContent = `${about.name}: ${symbol} = ${written}`;
     }
   }
-  find("row").replaceChildren(
-    ...quantities.map(({ key, label, unit }) => line(label, point.row[key], unit)));
+  showNumbers(point.row);
   if (point.advice) say(`${point.row.status}: ${point.advice}`, true);
   else if (point.jumped) say(`The film jumped, and lost energy, on the way here.`);
   else if (find("said").classList.contains("failed")) say("");
   // For tests, and for whoever drives the page from outside.
   Object.assign(document.body.dataset, { number: point.number, state: point.row.status });
+}
+
+// The numbers, so many times a second that one can read them at all.
+function showNumbers(row) {
+  last = row;
+  if (pausing) return;
+  for (const { key, unit } of quantities) {
+    cells.get(key).textContent = text(row[key], 6) + (row[key] !== null && unit ? ` ${unit}` : "");
+  }
+  pausing = setTimeout(() => {
+    pausing = null;
+    if (last !== row) showNumbers(last);
+  }, PAUSE);
 }
 
 function drawFilm(told) {
@@ -144,6 +160,13 @@ function chooseQuantities(row) {
   for (const { label, key, axis } of quantities) {
     if (axis === "y") find("y").add(new Option(label, key));
   }
+  find("row").replaceChildren(...quantities.map(({ key, label }) => {
+    const [pair, name, cell] = ["div", "dt", "dd"].map((tag) => document.createElement(tag));
+    name.textContent = label;
+    cells.set(key, cell);
+    pair.append(name, cell);
+    return pair;
+  }));
   setAxes();
 }
 
@@ -181,14 +204,6 @@ function text(value, digits) {
   const written = Number.isInteger(value) ? String(value)
     : small ? value.toExponential(digits - 1) : value.toPrecision(digits);
   return written.replaceAll("-", "−");
-}
-
-function line(label, value, unit) {
-  const [pair, name, number] = ["div", "dt", "dd"].map((tag) => document.createElement(tag));
-  name.textContent = label;
-  number.textContent = text(value, 6) + (value !== null && unit ? ` ${unit}` : "");
-  pair.append(name, number);
-  return pair;
 }
 
 for (const what of ["kick", "other", "begin", "save"]) {

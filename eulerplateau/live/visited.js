@@ -14,8 +14,8 @@ class VisitedDiagram {
 
   // Milliseconds between two drawings, and how often as long as one took: the film is more
   // urgent.
-  static PAUSE = 150;
-  static REST = 5;
+  static PAUSE = 250;
+  static REST = 8;
 
   constructor(canvas, varied) {
     this.points = [];

@@ -39,8 +39,8 @@ _DRAG = """((id, period) => {
 # Seconds: of dragging that does not count, and of a part of what does.
 _WARM, _PART = 5.0, 20.0
 _HEAD = (
-    "film", "films a second", "median (ms)", "95 % (ms)", "CPU a film (ms)",
-    "server (MB)", "page (MB)", "busy",
+    "film", "films a second", "median (ms)", "95 % (ms)", "CPU a film (ms): server",
+    "browser", "memory (MB): server", "page", "busy",
 )  # fmt: skip
 
 
@@ -51,14 +51,15 @@ class Part:
     Attributes
     ----------
     waits : (n,) float, ms from a slider's move to the film drawn for it
-    cpu : float, seconds of the server
+    server, browser : float, seconds of CPU
     memory, heap : float, MB, of the server and of the page's objects
     busy : float, processes that wanted a core, the system's mean of a minute
     """
 
     seconds: float
     waits: FloatArray
-    cpu: float
+    server: float
+    browser: float
     memory: float
     heap: float
     busy: float
@@ -72,7 +73,8 @@ class Part:
             f"{drawn / self.seconds:.1f}",
             f"{middle:.0f}",
             f"{high:.0f}",
-            f"{1e3 * self.cpu / max(drawn, 1):.0f}",
+            f"{1e3 * self.server / max(drawn, 1):.0f}",
+            f"{1e3 * self.browser / max(drawn, 1):.0f}",
             f"{self.memory:.0f}",
             f"{self.heap:.1f}",
             f"{self.busy:.1f}",
@@ -107,17 +109,25 @@ def dragged(browser: Browser, server: psutil.Process, seconds: float) -> Iterato
     browser.evaluate(_DRAG, slider)
     time.sleep(_WARM)
     end = time.monotonic() + seconds
+    driver = psutil.Process(browser.driver.service.process.pid)
     while (left := end - time.monotonic()) > 1:
         browser.evaluate("latencies.splice(0)")
-        started, cpu = time.monotonic(), sum(server.cpu_times()[:2])
+        started, before = time.monotonic(), (cpu(server), cpu(driver))
         time.sleep(min(_PART, left))
         waits = np.array(browser.evaluate("latencies"), dtype=float)
-        took, used = time.monotonic() - started, sum(server.cpu_times()[:2]) - cpu
+        took, after = time.monotonic() - started, (cpu(server), cpu(driver))
+        used = [now - then for now, then in zip(after, before, strict=True)]
         browser.driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
         heap = browser.evaluate("performance.memory.usedJSHeapSize") / 1e6
         memory = server.memory_info().rss / 1e6
-        yield Part(took, waits, used, memory, heap, os.getloadavg()[0])
+        yield Part(took, waits, *used, memory, heap, os.getloadavg()[0])
     browser.evaluate("clearInterval(window.dragging)")
+
+
+def cpu(process: psutil.Process) -> float:
+    """Return the CPU seconds of a process and all that it has started and still runs."""
+    every = [process, *process.children(recursive=True)]
+    return float(sum(sum(each.cpu_times()[:2]) for each in every))
 
 
 @click.command()

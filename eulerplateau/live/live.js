@@ -4,6 +4,7 @@ const find = (id) => document.getElementById(id);
 // Milliseconds from a slider's move to the film drawn for it: of the last ones.
 const latencies = [];
 const KEPT = 1000;
+const ROUNDING = 1e-9; // nothing that is shown is so small
 
 let about = null; // what the server said first
 let quantities = [];
@@ -200,6 +201,7 @@ function short(value) {
 function text(value, digits) {
   if (value === null) return "–";
   if (typeof value !== "number") return value;
+  if (Math.abs(value) < ROUNDING) return "0";
   const small = Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6;
   const written = Number.isInteger(value) ? String(value)
     : small ? value.toExponential(digits - 1) : value.toPrecision(digits);

@@ -128,7 +128,8 @@ class VisitedDiagram {
       : [0, 1] };
     for (const [name, [least, most]] of Object.entries(ends)) {
       // Rounding is not to look like a change.
-      const margin = Math.max(0.04 * (most - least), 1e-6);
+      const size = Math.max(Math.abs(least), Math.abs(most));
+      const margin = size < 1e-6 ? 0.1 : Math.max(0.04 * (most - least), 1e-3 * size);
       Object.assign(this.chart.options.scales[name], { min: least - margin, max: most + margin });
     }
     this.chart.update("none");

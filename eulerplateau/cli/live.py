@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import click
@@ -50,7 +51,8 @@ def live(
         return f"Saved as {saved[-1]}"
 
     working_on(lambda: f"{folder}: {len(saved)} shapes were saved")
-    with telling_of_compiling(lambda said: click.echo(f"eulerplateau: {said}", err=True)):
+    once = cache(lambda said: click.echo(f"eulerplateau: {said}", err=True))
+    with telling_of_compiling(once):
         film = LiveFilm(run)
     pages = Pages(folder.name, film.varied, film.at)
     serve(Service(pages, Worker(film, save), idle, browser, click.echo))

@@ -39,7 +39,8 @@ class LiveFilm:
     """The film of a run, which goes on from where it is.
 
     It is for one thread. Whatever the solver comes to is shown, and gone on from, as in a
-    sweep; the status says what it is.
+    sweep; the status says what it is. Where that is not finite MeshError is raised, and the
+    film stays where it is.
 
     Attributes
     ----------
@@ -78,9 +79,7 @@ class LiveFilm:
         """
         known = {each.key: each for each in self.varied}
         self._values |= {key: known[key].within(value) for key, value in values.items()}
-        before = self._found
-        found = self._solved(before if np.isfinite(before.shape.x).all() else None)
-        return self._come_to(found, "follow")
+        return self._come_to(self._solved(self._found), "follow")
 
     def kick(self) -> Visited:
         """Return where the film goes from a smooth push across its plane, at random."""
@@ -129,11 +128,9 @@ class LiveFilm:
                 for signed in (push, -push):
                     yield here.shape.moved(here.shape.x + signed * mode)
 
-    def _solved(self, start: Equilibrium | Shape | None) -> Equilibrium:
+    def _solved(self, start: Equilibrium | Shape) -> Equilibrium:
         problem, load = self._at_values()
         solver = self._spec.solver
-        if start is None:
-            start = start_shape(self._spec, self._disk)
         return solve(
             problem, load, start, solver=solver.name, max_iterations=solver.max_iterations
         )

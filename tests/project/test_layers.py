@@ -45,7 +45,16 @@ GROUND = {
 SHARED_KERNELS = {"eulerplateau.loop.kernels", "eulerplateau.loop.slide_kernels"}
 
 NUMERICS = {"numba", "numpy", "scipy"}
-HEAVY = {"gmsh", "matplotlib", "meshio", "pyvista", "trimesh", "vtk", "vtkmodules"}
+HEAVY = {
+    "aiohttp",
+    "gmsh",
+    "matplotlib",
+    "meshio",
+    "pyvista",
+    "trimesh",
+    "vtk",
+    "vtkmodules",
+}
 
 ROOT = Path(eulerplateau.__file__).parent
 

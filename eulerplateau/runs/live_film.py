@@ -97,8 +97,9 @@ class LiveFilm:
         here, alike = self._found, likeness_of(self._problem, _SAME)
         for start in self._elsewhere():
             found = self._solved(start)
-            apart = alike.distance(here.shape.x_loop, found.shape.x_loop)
-            if found.is_minimum and apart > _SAME:
+            if not found.is_minimum:
+                continue
+            if alike.distance(here.shape.x_loop, found.shape.x_loop) > _SAME:
                 self._left = here
                 return self._come_to(found, "other")
         return None
@@ -148,7 +149,7 @@ class LiveFilm:
         told = tell(problem, found, self._measurer, self._steps, row_type, **own)
         here = _Rates.of(problem, found, told.row, self._varied)
         jumped = False
-        if way in ("follow", "kick") and self._found.is_minimum:
+        if way in ("follow", "kick") and self._found.converged:
             jumped = here.lost_since(self._rates) > _LOST * abs(found.energy)
         if jumped:
             self._left = self._found

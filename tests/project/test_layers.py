@@ -44,6 +44,7 @@ GROUND = {
 # Compiled loops that other rooms call: numba wants what calls each other in one file.
 SHARED_KERNELS = {"eulerplateau.loop.kernels", "eulerplateau.loop.slide_kernels"}
 
+_FUNCTIONS = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 NUMERICS = {"numba", "numpy", "scipy"}
 HEAVY = {
     "aiohttp",
@@ -111,7 +112,7 @@ def loaded_at_import(node: ast.AST) -> Iterator[ast.AST]:
     """Yield what runs when a module is imported: not functions, not `if TYPE_CHECKING`."""
     for child in ast.iter_child_nodes(node):
         typing_only = isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test)
-        if not isinstance(child, ast.FunctionDef | ast.Lambda) and not typing_only:
+        if not isinstance(child, _FUNCTIONS) and not typing_only:
             yield child
             yield from loaded_at_import(child)
 

@@ -116,11 +116,11 @@ def dragged(browser: Browser, server: psutil.Process, seconds: float) -> Iterato
         time.sleep(min(_PART, left))
         waits = np.array(browser.evaluate("latencies"), dtype=float)
         took, after = time.monotonic() - started, (cpu(server), cpu(driver))
-        used = [now - then for now, then in zip(after, before, strict=True)]
+        own, its = after[0] - before[0], after[1] - before[1]
         browser.driver.execute_cdp_cmd("HeapProfiler.collectGarbage", {})
         heap = browser.evaluate("performance.memory.usedJSHeapSize") / 1e6
         memory = server.memory_info().rss / 1e6
-        yield Part(took, waits, *used, memory, heap, os.getloadavg()[0])
+        yield Part(took, waits, own, its, memory, heap, os.getloadavg()[0])
     browser.evaluate("clearInterval(window.dragging)")
 
 

@@ -7,7 +7,11 @@ from .exploration import (
     explore_on as explore_on,
 )
 from .family import Family as Family
-from .film_family import FilmFamily as FilmFamily, equilibrium as equilibrium
+from .film_family import (
+    FilmFamily as FilmFamily,
+    equilibrium as equilibrium,
+    likeness_of as likeness_of,
+)
 from .film_locus import Known as Known, film_at as film_at, locus_of_film as locus_of_film
 from .films import (
     FilmPoint as FilmPoint,

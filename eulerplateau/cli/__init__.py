@@ -21,6 +21,7 @@ from eulerplateau.cli.examples import examples
 from eulerplateau.cli.film import film
 from eulerplateau.cli.fit import fit
 from eulerplateau.cli.gallery import gallery
+from eulerplateau.cli.live import live
 from eulerplateau.cli.locus import locus
 from eulerplateau.cli.mesh import mesh
 from eulerplateau.cli.planar import planar
@@ -58,6 +59,7 @@ commands.add_command(examples)
 commands.add_command(film)
 commands.add_command(fit)
 commands.add_command(gallery)
+commands.add_command(live)
 commands.add_command(locus)
 commands.add_command(mesh)
 commands.add_command(planar)

@@ -81,7 +81,7 @@ def doctor() -> int:
     """
     checks: Sequence[Callable[[], Finding]] = (
         _python, _folder, _solving, _meshing, _diagrams, _renders, _clone, _browser,
-        _mp4, _cores, _dask, _parquet, _pandas, _evolver,
+        _mp4, _live, _cores, _dask, _parquet, _pandas, _evolver,
     )  # fmt: skip
     code = 0
     with ThreadPoolExecutor() as pool:  # most of them wait for a child
@@ -155,6 +155,10 @@ def _browser() -> Finding:
 
 def _mp4() -> Finding:
     return _extra("animations as MP4", "av", "'eulerplateau[mp4]'")
+
+
+def _live() -> Finding:
+    return _extra("a film that follows (live)", "aiohttp", "'eulerplateau[live]'")
 
 
 def _cores() -> Finding:

@@ -7,6 +7,7 @@
     start.py        where a run starts: at its mesh or at a stored shape
     sweep.py, exploration.py   a sweep, the branches; recording.py: what both write
     catalogue.py    all equilibria at a load
+    live_film.py    a film that follows what one drags; live_values.py: what that is
     rows.py         the columns of sweep.csv and its kin; table.py: the files;
                     folder.py: the folder
     shape_files.py  shapes/*.vtp and their fields, written and read

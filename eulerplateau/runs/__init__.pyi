@@ -12,6 +12,8 @@ from .cell_table import CellBranchRow as CellBranchRow, CellRow as CellRow
 from .examples import write_examples as write_examples
 from .exploration import Exploration as Exploration, run_branches as run_branches
 from .kinds import Kind as Kind
+from .live_film import LiveFilm as LiveFilm
+from .live_values import Varied as Varied
 from .locus import run_locus as run_locus
 from .locus_record import Asked as Asked, Locus as Locus
 from .noise import FLAT_ERRORS as FLAT_ERRORS, without_noise as without_noise
@@ -46,3 +48,4 @@ from .sweep import (
     conflict as conflict,
     run_sweep as run_sweep,
 )
+from .visited import Visited as Visited

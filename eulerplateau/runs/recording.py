@@ -10,17 +10,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import EulerPlateauError, OutputError
-from eulerplateau.film import Load
 from eulerplateau.interruption import working_on
-from eulerplateau.mesh import Measurer
+from eulerplateau.mesh import Curvatures, Disk, Measurer
 from eulerplateau.runs.about import blas_threads, describe, surroundings
 from eulerplateau.runs.checkpoint import Arrays
 from eulerplateau.runs.continuing import RESULTS, Lying, look, only_writer
 from eulerplateau.runs.folder import RunFolder
-from eulerplateau.runs.rows import Record, Row, columns
+from eulerplateau.runs.rows import Record, Row, columns, make_row
 from eulerplateau.runs.series_file import shape_name
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.table import write_special
@@ -175,6 +175,53 @@ def _folder(
 
 
 @dataclass(frozen=True)
+class Told(Generic[R]):
+    """What there is to say of an equilibrium: its row, and what its shape file holds.
+
+    Attributes
+    ----------
+    disk : with the triangles of its shape
+    fields : {name: (n_v, 3) or (n_v,)}, those of the loop's own terms and of contacts
+    state : what a solver needs to go on from it
+    """
+
+    row: R
+    disk: Disk
+    fields: dict[str, FloatArray]
+    state: dict[str, NDArray[Any]]
+    curvatures: Curvatures
+
+
+def tell(
+    problem: Problem,
+    found: Equilibrium,
+    measurer: Measurer,
+    step: int,
+    row_type: type[R],
+    **cells: Any,
+) -> Told[R]:
+    """Return what there is to say of an equilibrium of a problem.
+
+    `cells` are those of the row type's own columns, and its quantity.
+    """
+    measures, curvatures = measurer.measured(found.shape)
+    own, fields = problem.said_of_loop(found.shape)
+    state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
+    if problem.loop.diameter is not None:
+        from eulerplateau.runs import contact_record as told
+
+        own |= told.contact_cells(found)
+        fields["contact_force"] = told.contact_forces(problem, found)
+        state |= told.contact_data(problem, found)
+    parameters = problem.loop.parameters.items()
+    own |= {name: v for name, v in parameters if name in columns(row_type)}
+    row = make_row(
+        step, found, problem.film.load, row_type, {**cells, **asdict(measures), **own}
+    )
+    return Told(row, measurer.disk_of(found.shape), fields, state, curvatures)
+
+
+@dataclass(frozen=True)
 class Recorder(Generic[R]):
     """Writes a film's equilibria into a run."""
 
@@ -193,24 +240,19 @@ class Recorder(Generic[R]):
 
         `cells` are those of the row type's own columns.
         """
-        measures, curvatures = self.measurer.measured(found.shape)
-        own, fields = problem.said_of_loop(found.shape)
-        state = {"tensions": found.tensions, "n_neutral": np.array([found.n_neutral or 0])}
-        if problem.loop.diameter is not None:
-            from eulerplateau.runs import contact_record as told
-
-            own |= told.contact_cells(found)
-            fields["contact_force"] = told.contact_forces(problem, found)
-            state |= told.contact_data(problem, found)
-        row_type, parameters = self.opening.row_type, problem.loop.parameters.items()
-        own |= {name: v for name, v in parameters if name in columns(row_type)}
-        cells |= {**asdict(measures), **own, "quantity": self.opening.quantity}
-        row = make_row(len(self.run.rows), found, problem.film.load, row_type, cells)
-        disk, rest = self.measurer.disk_of(found.shape), problem.disk.digest
-        known = {**modes, **fields}, rest, state, curvatures
-        self.run.folder.record(row, disk, found.shape.x, *known)
-        self.run.rows.append(row)
-        return row
+        step, cells = len(self.run.rows), {**cells, "quantity": self.opening.quantity}
+        told = tell(problem, found, self.measurer, step, self.opening.row_type, **cells)
+        self.run.folder.record(
+            told.row,
+            told.disk,
+            found.shape.x,
+            {**modes, **told.fields},
+            problem.disk.digest,
+            told.state,
+            told.curvatures,
+        )
+        self.run.rows.append(told.row)
+        return told.row
 
 
 @contextmanager
@@ -222,33 +264,6 @@ def recording(
     about = describe(spec, disk, opening.quantity)
     with opened(path, opening, about, started) as run:
         yield Recorder(run, Measurer(disk), opening)
-
-
-def make_row(
-    step: int, found: Equilibrium, load: Load, row_type: type[R], cells: dict[str, Any]
-) -> R:
-    """Return the row of an equilibrium; `cells` holds the fields of its Measures.
-
-    `load` says what found.load is. Of a film with a tension, kL3_alpha is the load at which
-    springs on equilateral triangles carry the same.
-    """
-    return row_type(
-        step=step,
-        kL3_alpha=load.springs(found.load),
-        sigma_hat=load.tension(found.load),
-        energy=found.energy,
-        film_energy=found.film_energy,
-        bending_energy=found.bending_energy,
-        n_unstable=found.n_unstable,
-        lowest_eigenvalue=found.lowest_eigenvalue,
-        residual=found.residual,
-        film_residual=found.film_residual,
-        length_error=found.length_error,
-        iterations=found.iterations,
-        seconds=found.seconds,
-        status=found.status,
-        **{"quantity": load.column, **cells},
-    )
 
 
 def keep_point(

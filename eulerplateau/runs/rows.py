@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
-from eulerplateau.film import LOADS, SPRING_LOAD
+from eulerplateau.film import LOADS, SPRING_LOAD, Load
 from eulerplateau.runs.parameters import own_parameter
-from eulerplateau.solvers import Status
+from eulerplateau.solvers import Equilibrium, Status
 
 
 class LoadName(Protocol):
@@ -246,3 +246,32 @@ def columns(row_type: type[Any]) -> tuple[str, ...]:
 
 
 COLUMNS = columns(Row)
+
+R = TypeVar("R", bound=Row)
+
+
+def make_row(
+    step: int, found: Equilibrium, load: Load, row_type: type[R], cells: dict[str, Any]
+) -> R:
+    """Return the row of an equilibrium; `cells` holds the fields of its Measures.
+
+    `load` says what found.load is. Of a film with a tension, kL3_alpha is the load at which
+    springs on equilateral triangles carry the same.
+    """
+    return row_type(
+        step=step,
+        kL3_alpha=load.springs(found.load),
+        sigma_hat=load.tension(found.load),
+        energy=found.energy,
+        film_energy=found.film_energy,
+        bending_energy=found.bending_energy,
+        n_unstable=found.n_unstable,
+        lowest_eigenvalue=found.lowest_eigenvalue,
+        residual=found.residual,
+        film_residual=found.film_residual,
+        length_error=found.length_error,
+        iterations=found.iterations,
+        seconds=found.seconds,
+        status=found.status,
+        **{"quantity": load.column, **cells},
+    )

@@ -20,6 +20,8 @@ WRITER = ".writer"
 TABLES = "sweep", "branches", "catalogue"
 # In a folder that holds another run: where one that replaces it has its first row.
 NEW = ".new"
+# The folder of shapes that `eulerplateau live` saves: nobody else writes or removes them.
+LIVE = "live"
 _OUR_FILES = (
     *(f"{table}.{form}" for table in TABLES for form in ("csv", "pvd", "png")),
     "counts.csv",
@@ -46,7 +48,8 @@ def write_summary(path: Path, summary: Mapping[str, object]) -> None:
 def check_is_run(path: Path) -> None:
     """Raise OutputError for a folder with files that is no run."""
     ours = WRITER, NEW
-    files = [file.name for file in path.iterdir() if not file.name.startswith(ours)]
+    names = (file.name for file in path.iterdir() if file.name != LIVE)
+    files = [name for name in names if not name.startswith(ours)]
     if files and not read_summary(path).items() >= _MARK.items():
         problem = "holds something else than a run: name an empty or a new folder"
         raise OutputError(path, problem)

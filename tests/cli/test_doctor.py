@@ -31,7 +31,7 @@ def findings(monkeypatch: pytest.MonkeyPatch, **replaced: Finding) -> None:
     """Let every check find its part, but those replaced."""
     for name in (
         "python", "folder", "solving", "meshing", "diagrams", "renders", "clone", "browser",
-        "cores", "dask", "parquet", "pandas", "evolver",
+        "live", "cores", "dask", "parquet", "pandas", "evolver",
     ):  # fmt: skip
         found = replaced.get(name, Finding(name, ""))
         monkeypatch.setattr(doctor, f"_{name}", lambda found=found: found)

@@ -26,7 +26,8 @@ _FLAGS = (
     "--disable-component-update",
     "--disable-sync",
     "--disable-dev-shm-usage",
-    "--host-resolver-rules=MAP * ~NOTFOUND",  # should a page try, no name is found
+    # Should a page try, no name is found.
+    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
 )
 
 
@@ -65,10 +66,14 @@ class Browser:
 
     def open(self, page: Path) -> None:
         """Open a file; the log then holds what this one said and fetched."""
+        self.visit(page.as_uri())
+
+    def visit(self, address: str) -> None:
+        """Open an address; the log then holds what this page said and fetched."""
         self.driver.get("about:blank")
         for kind in ("browser", "performance"):
             self.driver.get_log(kind)
-        self.driver.get(page.as_uri())
+        self.driver.get(address)
 
     def evaluate(self, script: str, *arguments: Any) -> Any:
         """Return the value of a JavaScript expression; `arguments` are its arguments."""

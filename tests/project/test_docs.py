@@ -164,6 +164,7 @@ def test_tutorial_s_commands_do_what_it_says(clone: Path) -> None:
         "doctor",
         "estimate",
         "fit",
+        "live",  # which ends when somebody ends it
     }
     assert {line[1] for line in lines} == set(commands.commands) - elsewhere
     for line in lines:

@@ -28,6 +28,7 @@ ROOMS = (
     "cells",
     "runs",
     "pictures",
+    "live",
 )
 LEVEL = {room: level for level, room in enumerate([*ROOMS, "cli"])}
 GROUND = {
@@ -43,8 +44,18 @@ GROUND = {
 # Compiled loops that other rooms call: numba wants what calls each other in one file.
 SHARED_KERNELS = {"eulerplateau.loop.kernels", "eulerplateau.loop.slide_kernels"}
 
+_FUNCTIONS = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 NUMERICS = {"numba", "numpy", "scipy"}
-HEAVY = {"gmsh", "matplotlib", "meshio", "pyvista", "trimesh", "vtk", "vtkmodules"}
+HEAVY = {
+    "aiohttp",
+    "gmsh",
+    "matplotlib",
+    "meshio",
+    "pyvista",
+    "trimesh",
+    "vtk",
+    "vtkmodules",
+}
 
 ROOT = Path(eulerplateau.__file__).parent
 
@@ -101,7 +112,7 @@ def loaded_at_import(node: ast.AST) -> Iterator[ast.AST]:
     """Yield what runs when a module is imported: not functions, not `if TYPE_CHECKING`."""
     for child in ast.iter_child_nodes(node):
         typing_only = isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test)
-        if not isinstance(child, ast.FunctionDef | ast.Lambda) and not typing_only:
+        if not isinstance(child, _FUNCTIONS) and not typing_only:
             yield child
             yield from loaded_at_import(child)
 

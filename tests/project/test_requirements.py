@@ -19,7 +19,7 @@ RUN: list[str] = PYPROJECT["project"]["dependencies"]
 DEVELOP: list[str] = PYPROJECT["project"]["optional-dependencies"]["dev"]
 BUILD: list[str] = PYPROJECT["build-system"]["requires"]
 # Imported where there is one: what alone asks for it says so where it is missing.
-OPTIONAL = {"av", "distributed", "pandas", "pyarrow"}
+OPTIONAL = {"aiohttp", "av", "distributed", "pandas", "pyarrow"}
 
 
 def pins() -> dict[str, Requirement]:

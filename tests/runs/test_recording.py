@@ -10,8 +10,7 @@ import pytest
 from eulerplateau.film import SPRING_LOAD, TENSION, Load
 from eulerplateau.mesh import measure
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.runs.recording import make_row
-from eulerplateau.runs.rows import Row
+from eulerplateau.runs.rows import Row, make_row
 from eulerplateau.solvers import Equilibrium, Problem, Stability, Status, solve
 from tests.helpers.shapes import disk_points, fitted_order, mesh_of
 

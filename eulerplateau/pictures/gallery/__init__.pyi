@@ -5,3 +5,4 @@ from .collection import (
     collect as collect,
 )
 from .document import page as page
+from .parts import base64_of as base64_of, cell_of as cell_of, part as part

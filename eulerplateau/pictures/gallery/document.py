@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import json
-import math
 import re
 from collections.abc import Sequence
-from importlib.resources import files
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
 from eulerplateau.mesh.drawing import ABOVE, BACK, FRONT, LOOP, is_flat, mean_normal
 from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
+from eulerplateau.pictures.gallery.parts import DIGITS, base64_of, cell_of, part
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.wire import Wire, read_wire
 from eulerplateau.runs import Run, Series, without_noise
@@ -29,7 +26,6 @@ _INT16 = 32767
 _INT8 = 127
 # To less than a tenth of a degree.
 _NORMAL_DIGITS = 4
-_DIGITS = 10
 _SCRIPTS = ("quantities", "data", "film", "diagram", "main")
 
 
@@ -42,19 +38,15 @@ def page(gallery: Gallery) -> bytes:
     title = ", ".join(shown.run.name for shown in gallery.exhibits)
     parts = {
         "title": html.escape(title),
-        "licences": _part("vendor/LICENSES.txt"),
-        "style": _part("style.css"),
-        "libraries": _part("vendor/libraries.min.js"),
+        "licences": part("vendor/LICENSES.txt"),
+        "style": part("style.css"),
+        "libraries": part("vendor/libraries.min.js"),
         # "<" could end the script it stands in; in JSON it occurs inside texts only.
         "data": json.dumps(_data(gallery), allow_nan=False).replace("<", "\\u003c"),
-        "scripts": "".join(_part(f"{name}.js") for name in _SCRIPTS),
+        "scripts": "".join(part(f"{name}.js") for name in _SCRIPTS),
     }
-    template = _part("page.html")
+    template = part("page.html")
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template).encode()
-
-
-def _part(name: str) -> str:
-    return files("eulerplateau.pictures.gallery").joinpath(name).read_text(encoding="utf-8")
 
 
 def _data(gallery: Gallery) -> dict[str, Any]:
@@ -102,8 +94,8 @@ def _first_eye(gallery: Gallery, eye: FloatArray) -> FloatArray:
 def _mesh(mesh: Mesh) -> dict[str, Any]:
     return {
         "vertices": mesh.n_v,
-        "triangles": _base64(mesh.triangles.astype("<u4")),
-        "loop": _base64(mesh.loop.astype("<u4")),
+        "triangles": base64_of(mesh.triangles.astype("<u4")),
+        "loop": base64_of(mesh.loop.astype("<u4")),
     }
 
 
@@ -115,18 +107,18 @@ def _run(
         "name": run.name,
         "mesh": shown.mesh,
         "tilings": [
-            [first, _base64(tiles.astype("<u4"))] for first, tiles in shapes.tilings[1:]
+            [first, base64_of(tiles.astype("<u4"))] for first, tiles in shapes.tilings[1:]
         ],
-        "shapes": _base64(np.rint(shown.x / unit).astype("<i2")),
+        "shapes": base64_of(np.rint(shown.x / unit).astype("<i2")),
         "marks": _marks(wires),
-        "radii": [float(f"{size * wire.radius:.{_DIGITS}g}") for wire in wires],
+        "radii": [float(f"{size * wire.radius:.{DIGITS}g}") for wire in wires],
         "series": [_series(series) for series in run.series],
         "special": run.special,
         "normals": [
             np.round(mean_normal(x[shapes.loop]), _NORMAL_DIGITS).tolist() for x in shown.x
         ],
         "rows": [
-            [_value(cells[name]) for name in columns] for cells in _cells(run, columns)
+            [cell_of(cells[name]) for name in columns] for cells in _cells(run, columns)
         ],
     }
 
@@ -169,7 +161,7 @@ def _marks(wires: Sequence[Wire]) -> str | None:
     drawn = [wire.marks for wire in wires if wire.marks is not None]
     if len(drawn) < len(wires):
         return None
-    return _base64(np.rint(_INT8 * np.stack(drawn)).astype("i1"))
+    return base64_of(np.rint(_INT8 * np.stack(drawn)).astype("i1"))
 
 
 def _series(series: Series) -> dict[str, Any]:
@@ -182,17 +174,6 @@ def _series(series: Series) -> dict[str, Any]:
     }
 
 
-def _value(value: Any) -> Any:
-    """Return a cell as JSON has it: null for what is not computed or not finite."""
-    if isinstance(value, float):
-        return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
-    return getattr(value, "value", value)
-
-
 def _hexadecimal(colour: Sequence[float]) -> str:
     """Return a colour (3,), 0 to 1, as HTML has it."""
     return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
-
-
-def _base64(array: NDArray[Any]) -> str:
-    return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")

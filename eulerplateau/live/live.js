@@ -1,0 +1,220 @@
+// The page of a live film: sliders ask the server, films and points come back.
+
+const find = (id) => document.getElementById(id);
+// Milliseconds from a slider's move to the film drawn for it: of the last ones.
+const latencies = [];
+const KEPT = 1000;
+const ROUNDING = 1e-9; // nothing that is shown is so small
+
+let about = null; // what the server said first
+let quantities = [];
+let diagram = null;
+let film = null;
+let mesh = null; // { loop }: what never changes
+let tiles = null;
+let asked = 0; // numbers what is asked
+const askedAt = new Map(); // when a slider asked
+let held = null; // the key of the slider that is held
+let socket = null;
+const cells = new Map(); // of the numbers, by their keys
+let last = null; // the row that is to be shown
+let pausing = null; // until numbers are shown again
+const PAUSE = 100; // milliseconds
+
+function connect() {
+  socket = new WebSocket(new URL("talk", location.href.replace(/^http/, "ws")));
+  socket.addEventListener("message", ({ data }) => {
+    const told = JSON.parse(data);
+    if (told.varied) open(told);
+    else show(told);
+  });
+  socket.addEventListener("close", () => {
+    say("The film is no longer served: eulerplateau live has ended.", true);
+    document.body.dataset.state = "closed";
+    for (const control of document.querySelectorAll("#varied input, nav button")) {
+      control.disabled = true;
+    }
+  });
+}
+
+function send(what) {
+  if (socket.readyState !== WebSocket.OPEN) return;
+  asked += 1;
+  socket.send(JSON.stringify({ ...what, asked }));
+}
+
+// The first that is told: what can be varied, and how shapes are decoded.
+function open(told) {
+  about = told;
+  document.title = `${about.name} live`;
+  mesh = { loop: decode(about.loop, Uint32Array) };
+  about.varied = about.varied.map((each) => {
+    const known = QUANTITIES.film.find(({ key }) => key === each.key);
+    return { ...each, label: known?.label ?? each.key };
+  });
+  find("varied").replaceChildren(...about.varied.map(slider));
+  diagram = new VisitedDiagram(find("chart"), about.varied);
+  try {
+    film = new Film(find("film"), { ...about, radius: 0 });
+  } catch {
+    find("no-webgl").hidden = false;
+  }
+  makeLegend();
+}
+
+// A slider and a number to type, for one quantity.
+function slider({ key, symbol, unit, low, high }) {
+  const line = document.createElement("label");
+  const range = Object.assign(document.createElement("input"), {
+    type: "range", min: low, max: high, step: "any", id: `range-${key}`,
+  });
+  const number = Object.assign(document.createElement("input"), {
+    type: "number", min: low, max: high, step: "any", id: `number-${key}`,
+  });
+  range.setAttribute("aria-label", symbol);
+  number.setAttribute("aria-label", `${symbol}, to type`);
+  const follow = (value) => {
+    askedAt.set(asked + 1, performance.now());
+    send({ follow: { [key]: value } });
+  };
+  range.addEventListener("input", () => {
+    number.value = short(range.valueAsNumber);
+    follow(range.valueAsNumber);
+  });
+  range.addEventListener("pointerdown", () => { held = key; });
+  for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+    range.addEventListener(end, () => { held = null; });
+  }
+  number.addEventListener("change", () => {
+    if (Number.isFinite(number.valueAsNumber)) follow(number.valueAsNumber);
+  });
+  line.append(unit ? `${symbol} (${unit})` : symbol, range, number);
+  return line;
+}
+
+// What has happened since: points, the shape as it is now, what there is to say.
+function show(told) {
+  for (const line of told.said ?? []) say(line);
+  if (told.points) showPoints(told);
+  // Drawn when the browser draws; the server then sends what there is by then.
+  requestAnimationFrame(() => {
+    if (told.points) drawFilm(told);
+    send({ drawn: true });
+  });
+}
+
+function showPoints({ points, asker }) {
+  const point = points.at(-1);
+  if (!quantities.length) chooseQuantities(point.row);
+  diagram.add(points);
+  for (const { key, symbol, unit } of about.varied) {
+    const value = point.values[key];
+    const mine = asker[0] === about.page && held === key;
+    if (!mine) {
+      find(`range-${key}`).value = value;
+      if (document.activeElement !== find(`number-${key}`)) {
+        find(`number-${key}`).value = short(value);
+      }
+    }
+    if (key === about.varied[0].key) {
+      const written = [text(value, 6), unit].filter(Boolean).join(" ");
+      find("headline").textContent = `${about.name}: ${symbol} = ${written}`;
+    }
+  }
+  showNumbers(point.row);
+  if (point.advice) say(`${point.row.status}: ${point.advice}`, true);
+  else if (point.jumped) say(`The film jumped, and lost energy, on the way here.`);
+  else if (find("said").classList.contains("failed")) say("");
+  // For tests, and for whoever drives the page from outside.
+  Object.assign(document.body.dataset, { number: point.number, state: point.row.status });
+}
+
+// The numbers, so many times a second that one can read them at all.
+function showNumbers(row) {
+  last = row;
+  if (pausing) return;
+  for (const { key, unit } of quantities) {
+    cells.get(key).textContent = text(row[key], 6) + (row[key] !== null && unit ? ` ${unit}` : "");
+  }
+  pausing = setTimeout(() => {
+    pausing = null;
+    if (last !== row) showNumbers(last);
+  }, PAUSE);
+}
+
+function drawFilm(told) {
+  if (told.triangles) tiles = decode(told.triangles, Uint32Array);
+  const { x, marks, radius } = told.shape;
+  const positions = Float32Array.from(decode(x, Int16Array), (value) => value * about.unit);
+  film?.show(mesh, tiles, positions, marks && decode(marks, Int8Array), radius);
+  document.body.dataset.drawn = told.points.at(-1).number;
+  const [page, number] = told.asker;
+  if (page !== about.page || !askedAt.has(number)) return;
+  latencies.push(performance.now() - askedAt.get(number));
+  if (latencies.length > KEPT) latencies.shift();
+  for (const before of askedAt.keys()) if (before <= number) askedAt.delete(before);
+}
+
+function chooseQuantities(row) {
+  quantities = QUANTITIES.film.filter(({ key }) => key in row);
+  for (const { label, key } of about.varied) find("x").add(new Option(label, key));
+  for (const { label, key, axis } of quantities) {
+    if (axis === "y") find("y").add(new Option(label, key));
+  }
+  find("row").replaceChildren(...quantities.map(({ key, label }) => {
+    const [pair, name, cell] = ["div", "dt", "dd"].map((tag) => document.createElement(tag));
+    name.textContent = label;
+    cells.set(key, cell);
+    pair.append(name, cell);
+    return pair;
+  }));
+  setAxes();
+}
+
+function setAxes() {
+  const x = about.varied.find(({ key }) => key === find("x").value);
+  diagram.setAxes(x, quantities.find(({ key }) => key === find("y").value));
+}
+
+function makeLegend() {
+  const entries = Object.values(VisitedDiagram.KINDS).map(({ colour, glyph, label }) => {
+    const [entry, mark] = [document.createElement("span"), document.createElement("b")];
+    mark.style.color = colour;
+    mark.textContent = glyph;
+    entry.append(mark, label);
+    return entry;
+  });
+  const words = document.createElement("span");
+  words.textContent = "open: unstable or not known; dashed: a jump";
+  find("legend").replaceChildren(...entries, words);
+}
+
+function say(text, failed = false) {
+  find("said").textContent = text;
+  find("said").classList.toggle("failed", failed);
+}
+
+function short(value) {
+  return Number(value.toPrecision(6));
+}
+
+function text(value, digits) {
+  if (value === null) return "–";
+  if (typeof value !== "number") return value;
+  if (Math.abs(value) < ROUNDING) return "0";
+  const small = Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6;
+  const written = Number.isInteger(value) ? String(value)
+    : small ? value.toExponential(digits - 1) : value.toPrecision(digits);
+  return written.replaceAll("-", "−");
+}
+
+for (const what of ["kick", "other", "begin", "save"]) {
+  find(what).addEventListener("click", () => {
+    if (what !== "save") say(what === "other" ? "Seeking another stable state ..." : "");
+    send({ click: what });
+  });
+}
+for (const axis of ["x", "y"]) find(axis).addEventListener("change", setAxes);
+find("show-all").addEventListener("click", () => diagram.whole());
+find("view").addEventListener("click", () => film?.firstView());
+connect();

@@ -1,0 +1,1 @@
+"""How fast a live film follows a slider, and whether it grows: docs/live.md."""

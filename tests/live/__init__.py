@@ -1,0 +1,1 @@
+"""A live film: its thread, its server, its page."""

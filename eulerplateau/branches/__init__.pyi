@@ -1,5 +1,6 @@
 from .catalogue import Entry as Entry, Plan as Plan, catalogue_at as catalogue_at
 from .continuation import follow as follow
+from .control import StepControl as StepControl
 from .exploration import (
     DiagramPoint as DiagramPoint,
     Limits as Limits,
@@ -31,7 +32,6 @@ from .locus_between import Resolution as Resolution, Special as Special
 from .locus_point import LocusPoint as LocusPoint
 from .point import (
     BranchPoint as BranchPoint,
-    StepControl as StepControl,
     first_point as first_point,
     point_near as point_near,
 )
@@ -39,6 +39,7 @@ from .progress import Arrays as Arrays, progress_from as progress_from
 from .scaling import PowerLaw as PowerLaw, fit_power as fit_power
 from .special import (
     BIFURCATION as BIFURCATION,
+    CONTACT as CONTACT,
     FOLD as FOLD,
     SpecialPoint as SpecialPoint,
     branches_from as branches_from,

@@ -14,19 +14,43 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+from eulerplateau.branches.control import Direction, StepControl
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.point import (
     BranchPoint,
-    Direction,
-    StepControl,
     correct,
     inner,
     make_direction,
+    parameter_drift,
 )
 
 _EASY = 4  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
 _LEAST_LEAP = 1e-4  # arclength below which a leap is none, but a branch that turns
+
+
+class LostError(ArithmeticError):
+    """A step leads where it is not known what changes on the way: a shorter one may do."""
+
+
+@dataclass(frozen=True)
+class Kink:
+    """A place where a branch goes on in another family.
+
+    Attributes
+    ----------
+    before, after : the same equilibrium, where the branch comes to it and where it goes on
+    what : in a word, what happens; empty where only how it is said changes
+    error : what rounding in the margin can have moved the parameter by
+    """
+
+    before: BranchPoint
+    after: BranchPoint
+    what: str
+    error: float
+
+
+Kinks = Callable[[BranchPoint, BranchPoint, StepControl], Kink | None]
 
 
 @dataclass(frozen=True)
@@ -37,16 +61,27 @@ class Place:
     ----------
     step : float, arclength, of the next step if that can be corrected
     left : int, points that may still follow
+    kink : where the branch has one there; it goes on at `point`
     """
 
     point: BranchPoint
     step: float
     left: int
+    kink: Kink | None = None
+
+    @property
+    def end(self) -> BranchPoint:
+        """The last point of the smooth piece that leads there."""
+        return self.point if self.kink is None else self.kink.before
 
 
 def never(before: BranchPoint, after: BranchPoint) -> bool:
     """Return that no step leaps."""
     return False
+
+
+def smooth(before: BranchPoint, after: BranchPoint, control: StepControl) -> None:
+    """Return no kink: that of a family whose loops are not bounded."""
 
 
 def follow(
@@ -77,20 +112,33 @@ def next_place(
     place: Place,
     control: StepControl,
     leaps: Callable[[BranchPoint, BranchPoint], bool] = never,
+    kinks: Kinks = smooth,
 ) -> Place | None:
-    """Return the next place on a branch; None if there is none, or there were enough."""
+    """Return the next place on a branch; None if there is none, or there were enough.
+
+    A step ends at the first of the `kinks` that the branch has.
+    """
     if place.left == 0:
         return None
-    point, step, after = place.point, place.step, None
+    point, step, after, kink = place.point, place.step, None, None
     while after is None:
         after = advance(point, step, control)
         if after is None or (step > _LEAST_LEAP and leaps(point, after)):
-            after, step = None, 0.5 * step
+            after = None
+        else:
+            try:
+                kink = kinks(point, after, control)
+            except LostError:
+                after = None
+        if after is None:
+            step *= 0.5
             if step < control.smallest_step:
                 return None
     if after.corrections <= _EASY:
         step = min(1.5 * step, control.largest_step)
-    return Place(recentred(after, control), step, place.left - 1)
+    if kink is not None:
+        after = kink.after
+    return Place(recentred(after, control), step, place.left - 1, kink)
 
 
 def advance(point: BranchPoint, step: float, control: StepControl) -> BranchPoint | None:
@@ -115,7 +163,8 @@ def _kept(point: BranchPoint, after: BranchPoint, control: StepControl) -> Direc
     if len(point.model.gradient) == len(model.gradient):
         return point.direction
     coefficients = model.coefficients(point.direction.displacement)
-    return make_direction(model, coefficients, point.direction.rate, control)
+    drift = parameter_drift(after.family, after.energy, model)
+    return make_direction(model, coefficients, point.direction.rate, control, drift)
 
 
 def recentred(point: BranchPoint, control: StepControl) -> BranchPoint:

@@ -158,7 +158,7 @@ def part_along(
     parameter : that of the branch, or another one of the energy's
     unit : float, a change of it that counts, as a StepControl's
     """
-    pull = energy.rate(parameter, model.x)
+    pull = energy.pull(parameter, model.x, model.tensions)
     slope = model.slope(pull)
     held = energy.constraint.force(model.x, model.tensions)
     forces = [force / unit for force in (*energy.forces(model.x), held)]

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.control import Direction, StepControl
 from eulerplateau.branches.family import Family
 from eulerplateau.interruption import heed
 from eulerplateau.loop import LoopEnergy
@@ -21,75 +22,6 @@ from eulerplateau.solvers import (
 
 _CORRECTIONS = 12
 NOISE = 1e-10  # relative singular value below which forces are rounding
-
-
-@dataclass(frozen=True)
-class StepControl:
-    """How a branch is followed.
-
-    Attributes
-    ----------
-    window : the parameter's range; a branch ends where it leaves it
-    unit : float
-        A change of the parameter by this much is as long as a displacement of 1 L (r.m.s.).
-    first_step, largest_step, smallest_step : arclengths
-    max_points : int, per branch
-    least : float
-        Values of the parameter down to this one, included, do not exist.
-    """
-
-    window: tuple[float, float]
-    unit: float
-    first_step: float = 5e-3
-    largest_step: float = 0.03
-    smallest_step: float = 1e-9
-    max_points: int = 400
-    least: float = 0.0
-
-    def scale(self, value: float) -> float:
-        """Return with what differences from a value are compared.
-
-        That is the value, or `unit` where zero is a value like any other.
-        """
-        return value if self.least >= 0 else self.unit
-
-
-@dataclass(frozen=True)
-class Direction:
-    """A direction of a branch, of unit arclength.
-
-    Attributes
-    ----------
-    displacement : (n, d) float, of the loop
-    rate : float, of the parameter
-    """
-
-    displacement: FloatArray
-    rate: float
-
-    def reversed(self) -> Direction:
-        """Return the opposite direction."""
-        return Direction(-self.displacement, -self.rate)
-
-
-@dataclass(frozen=True)
-class Motion:
-    """A displacement (n, d) with changes of both parameters (2,)."""
-
-    displacement: FloatArray
-    rates: FloatArray
-
-    def __mul__(self, factor: float) -> Motion:
-        """Return it times a number."""
-        return Motion(factor * self.displacement, factor * self.rates)
-
-    def __add__(self, other: Motion) -> Motion:
-        """Return the sum of two."""
-        return Motion(self.displacement + other.displacement, self.rates + other.rates)
-
-    def __sub__(self, other: Motion) -> Motion:
-        """Return the difference of two."""
-        return self + other * -1.0
 
 
 @dataclass(frozen=True)
@@ -133,8 +65,27 @@ def first_point(
     model = tangent_model(energy, x)
     upwards = Direction(np.zeros_like(x), control.unit)
     slope = parameter_slope(family, energy, model)
-    direction = branch_direction(model, slope, upwards, control)
+    drift = parameter_drift(family, energy, model)
+    direction = branch_direction(model, slope, upwards, control, drift)
     return BranchPoint(family, model, value, direction, 0.0, 0)
+
+
+def point_on(
+    family: Family, x: FloatArray, value: float, last: Direction, control: StepControl
+) -> BranchPoint | None:
+    """Return the branch point next to one of another family, turned the way of `last`.
+
+    It is all but an equilibrium; it is corrected across its own direction. None if lost.
+    """
+    energy = family.energy(value)
+    there = energy.constraint.project(x)
+    if there is None:
+        return None
+    model = tangent_model(energy, there)
+    slope = parameter_slope(family, energy, model)
+    drift = parameter_drift(family, energy, model)
+    way = branch_direction(model, slope, last, control, drift)
+    return correct(family, there, value, way, control)
 
 
 def point_near(
@@ -212,23 +163,28 @@ def _correct(
             energy = family.energy(value)
             model = tangent_model(energy, x)
             slope = parameter_slope(family, energy, model)
+            drift = parameter_drift(family, energy, model)
         except LinAlgError:  # no film on this loop
             return None
         off = inner(model, direction, Direction(x - guess, value - guessed), control)
         settled = model.residual <= max(4 * model.rounding, 1e-13)
         stuck = model.residual < RESIDUAL_TOLERANCE**1.5 and model.residual > 0.5 * best
         if settled or stuck:
-            tangent = branch_direction(model, slope, direction, control)
+            tangent = branch_direction(model, slope, direction, control, drift)
             return BranchPoint(family, model, value, tangent, 0.0, corrections)
         best = min(best, model.residual)
-        system = _bordered(model, slope, direction, control)
+        system = _bordered(model, slope, direction, control, drift)
         rhs = -np.append(model.gradient, off)
         try:
             shift = _solve(system, rhs, smallest)
         except LinAlgError:
             return None
-        x = constraint.project(x + model.displacement(shift[:-1]))
-        value = value + float(shift[-1])
+        moved, more = model.displacement(shift[:-1]), float(shift[-1])
+        value = value + more
+        if drift is not None:
+            moved = moved + more * drift
+            constraint = family.energy(value).constraint
+        x = constraint.project(x + moved)
     return None
 
 
@@ -239,35 +195,65 @@ def _solve(system: FloatArray, rhs: FloatArray, smallest: float) -> FloatArray:
 
 
 def branch_direction(
-    model: TangentModel, slope: FloatArray, last: Direction, control: StepControl
+    model: TangentModel,
+    slope: FloatArray,
+    last: Direction,
+    control: StepControl,
+    drift: FloatArray | None = None,
 ) -> Direction:
     """Return the branch's direction at an equilibrium, turned the way of `last`.
 
-    `slope` (m,) is the model's parameter_slope. The null vector of [H, b]: bordering by
-    `last` would have to find one near `last`, also where a step has landed on a branch
-    that crosses.
+    `slope` (m,) is the model's parameter_slope, `drift` as of make_direction. The null
+    vector of [H, b]: bordering by `last` would have to find one near `last`, also where a
+    step has landed on a branch that crosses.
     """
     wide = np.column_stack([model.hessian, slope * control.unit])
     null = np.linalg.qr(wide.T, mode="complete")[0][:, -1]
-    found = make_direction(model, null[:-1], null[-1] * control.unit, control)
+    found = make_direction(model, null[:-1], null[-1] * control.unit, control, drift)
     return found if inner(model, found, last, control) >= 0 else found.reversed()
 
 
 def make_direction(
-    model: TangentModel, coefficients: FloatArray, rate: float, control: StepControl
+    model: TangentModel,
+    coefficients: FloatArray,
+    rate: float,
+    control: StepControl,
+    drift: FloatArray | None = None,
 ) -> Direction:
-    """Return the direction with these tangent coefficients, scaled to unit arclength."""
-    size = float(np.sqrt(coefficients @ coefficients + (rate / control.unit) ** 2))
-    return Direction(model.displacement(coefficients / size), rate / size)
+    """Return the direction with these tangent coefficients, scaled to unit arclength.
+
+    `drift` (n, d) is how the loop moves besides, per change of the parameter, where that
+    changes what it is held to.
+    """
+    square = coefficients @ coefficients + (rate / control.unit) ** 2
+    if drift is not None:
+        # It is the least displacement, and across all that keep what the loop is held to.
+        square += rate**2 * (model.weights @ np.sum(drift**2, axis=1))
+    size = float(np.sqrt(square))
+    moved = model.displacement(coefficients / size)
+    if drift is not None:
+        moved = moved + rate / size * drift
+    return Direction(moved, rate / size)
 
 
 def parameter_slope(family: Family, energy: LoopEnergy, model: TangentModel) -> FloatArray:
     """Return b = dg/dparameter (m,), g the model's gradient."""
-    return model.slope(energy.rate(family.parameter, model.x))
+    return model.slope(energy.pull(family.parameter, model.x, model.tensions))
+
+
+def parameter_drift(
+    family: Family, energy: LoopEnergy, model: TangentModel
+) -> FloatArray | None:
+    """Return the loop's drift (n, d) with the parameter; None where it has none."""
+    return energy.bounds.drift(family.parameter, model.x)
 
 
 def _bordered(
-    model: TangentModel, slope: FloatArray, direction: Direction, control: StepControl
+    model: TangentModel,
+    slope: FloatArray,
+    direction: Direction,
+    control: StepControl,
+    drift: FloatArray | None,
 ) -> FloatArray:
     """Return [[H, b], [normal^T, rate / unit^2]]: regular at folds, where H is not."""
     m = len(slope)
@@ -276,4 +262,6 @@ def _bordered(
     system[:m, m] = slope
     system[m, :m] = model.coefficients(direction.displacement)
     system[m, m] = direction.rate / control.unit**2
+    if drift is not None:
+        system[m, m] += model.weights @ np.sum(direction.displacement * drift, axis=1)
     return system

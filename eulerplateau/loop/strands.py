@@ -87,6 +87,11 @@ class Strands:
         norm = np.diag(loop.mean_lengths) + _SPREAD**4 * loop.bending_matrix
         return np.linalg.inv(norm).astype(np.float64, copy=False)
 
+    def weights(self, s: FloatArray) -> FloatArray:
+        """Return phi_v(s) (k, n), by which vertices make the curve at places s (k,)."""
+        weights: FloatArray = self._basis(s % self.knots[-1])
+        return weights
+
     def curve(self, x: FloatArray) -> CubicSpline:
         """Return the smooth curve through vertices x (n, d)."""
         return CubicSpline(self.knots, np.vstack([x, x[:1]]), bc_type="periodic")
@@ -180,6 +185,11 @@ class Strands:
         """Return d2D/ds2 (k,) where D is least near each of the places, by s and t."""
         slides = np.ones(len(gaps), dtype=bool)
         return self._followed(self._pieces(x), replace(gaps, slides=slides))[1]
+
+    def spreading(self, x: FloatArray, gaps: Gaps) -> FloatArray:
+        """Return d2D/ds2 (k,) at each of the places, D the least distance by t."""
+        held = np.zeros(len(gaps), dtype=bool)
+        return self._followed(self._pieces(x), replace(gaps, slides=held))[1]
 
     def laid_along(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands touch at a point that lie along each other by now."""

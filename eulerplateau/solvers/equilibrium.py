@@ -177,6 +177,11 @@ class Equilibrium:
         """The smallest eigenvalue; None where the solver does not compute it."""
         return None if self.stability is None else self.stability.lowest
 
+    @property
+    def overlap(self) -> float:
+        """By how much strands of a loop with a diameter overlap; 0 of any other."""
+        return 0.0 if self.contacts is None else max(0.0, -self.contacts.smallest_gap)
+
     def __repr__(self) -> str:
         """Return one line: load, energy, status, Morse index."""
         index = "" if self.n_unstable is None else f", {self.n_unstable} unstable"
@@ -200,3 +205,21 @@ def with_stability(found: Equilibrium, stability: Stability | None) -> Equilibri
     elif status is Status.CONVERGED and not certain:
         status = Status.STALLED
     return replace(found, status=status, stability=stability)
+
+
+def not_finite(shape: Shape, load: float) -> Equilibrium:
+    """Return the record of a start that no solver can work with."""
+    return Equilibrium(
+        shape=shape,
+        tensions=np.zeros(len(shape.loop)),
+        load=load,
+        energy=np.nan,
+        film_energy=np.nan,
+        bending_energy=np.nan,
+        residual=np.nan,
+        film_residual=np.nan,
+        length_error=np.nan,
+        iterations=0,
+        seconds=0.0,
+        status=Status.NOT_FINITE,
+    )

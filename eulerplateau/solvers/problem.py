@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,11 +25,17 @@ from eulerplateau.solvers.equilibrium import (
     Equilibrium,
     Stability,
     Status,
+    not_finite,
     with_stability,
 )
 
+if TYPE_CHECKING:
+    from eulerplateau.loop import Contacts
+
 # Relative error of lengths up to which what a solver stopped at is a loop at all.
 _CLOSED = 1e-3
+# By which part of the diameter strands may overlap between the vertices they are held at.
+_OVERLAP = 1e-2
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -207,9 +214,15 @@ class Problem:
         return self.loop.pinched(shape.x_loop) or self.film.pinched(shape, self.loop)
 
     def equilibrium(
-        self, shape: Shape, tensions: FloatArray, load: float, status: Status
+        self,
+        shape: Shape,
+        tensions: FloatArray,
+        load: float,
+        status: Status,
+        contacts: Contacts | None = None,
     ) -> Equilibrium:
         """Record a shape with all its numbers computed by the kernels on the full mesh."""
+        pushes = None if contacts is None else contacts.pushes
         film, pull = self.film.energy_gradient(shape, load)
         bending = self.bending_energy(shape)[0]
         terms = self.loop.terms.items()
@@ -224,12 +237,13 @@ class Problem:
             film_energy=film,
             bending_energy=bending,
             loop_energies=loop,
-            residual=self.residual(shape, tensions, load),
+            residual=self.residual(shape, tensions, load, pushes),
             film_residual=float(inside / strongest) if strongest > 0.0 else 0.0,
             length_error=self.length_error(shape),
             iterations=0,
             seconds=0.0,
             status=status,
+            contacts=contacts,
         )
 
     def record(
@@ -249,20 +263,7 @@ class Problem:
         """Return the record of a start no solver can work with, or None."""
         if np.isfinite(shape.x).all() and abs(load) <= LARGEST_LOAD:
             return None
-        return Equilibrium(
-            shape=shape,
-            tensions=np.zeros(len(shape.loop)),
-            load=load,
-            energy=np.nan,
-            film_energy=np.nan,
-            bending_energy=np.nan,
-            residual=np.nan,
-            film_residual=np.nan,
-            length_error=np.nan,
-            iterations=0,
-            seconds=0.0,
-            status=Status.NOT_FINITE,
-        )
+        return not_finite(shape, load)
 
     def classified(self, found: Equilibrium) -> Equilibrium:
         """Return `found`; UNRESOLVED if it converged to a loop that its mesh cannot carry.
@@ -286,7 +287,12 @@ class Problem:
             return replace(found, status=Status.UNRESOLVED)
         if self.film.folded(found.shape):
             return replace(found, status=Status.FOLDED)
-        thick = self.loop.diameter
-        if thick is not None and self.film.touches(found.shape, thick):
+        diameter = self.loop.diameter
+        if diameter is None:
+            return found
+        # What vertices do not see of strands along each other is an edge's length's fault.
+        if found.overlap > _OVERLAP * diameter:
+            return replace(found, status=Status.UNRESOLVED)
+        if self.film.touches(found.shape, diameter):
             return replace(found, status=Status.FILM_TOUCHED)
         return found

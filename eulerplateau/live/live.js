@@ -55,11 +55,21 @@ function open(told) {
   find("varied").replaceChildren(...about.varied.map(slider));
   diagram = new VisitedDiagram(find("chart"), about.varied);
   try {
-    film = new Film(find("film"), { ...about, radius: 0 });
+    const antialias = !drawsInSoftware();
+    film = new Film(find("film"), { ...about, radius: 0, antialias });
   } catch {
     find("no-webgl").hidden = false;
   }
   makeLegend();
+}
+
+// Whether there is no graphics card: smooth edges then take most of the time.
+function drawsInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const names = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe/i.test(name);
 }
 
 // A slider and a number to type, for one quantity.

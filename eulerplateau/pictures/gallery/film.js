@@ -9,12 +9,12 @@ class Film {
 
   // `eye` points from the film to the camera; at first it sees `halfSize` [across, up], in
   // the unit in which `size` is the length of a loop; no tube is thicker than `radius`.
-  constructor(canvas, { eye, halfSize, size, radius }) {
+  constructor(canvas, { eye, halfSize, size, radius, antialias = true }) {
     const L = Libraries;
     this.halfSize = halfSize;
     this.largestRadius = radius;
     this.canvas = canvas;
-    this.renderer = new L.WebGLRenderer({ canvas, antialias: true });
+    this.renderer = new L.WebGLRenderer({ canvas, antialias });
     this.renderer.setClearColor("#ffffff");
     this.scene = new L.Scene();
     this.scene.add(new L.AmbientLight("#ffffff", 1.7));

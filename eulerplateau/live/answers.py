@@ -11,14 +11,16 @@ from scipy.spatial.transform import Rotation
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
-from eulerplateau.mesh.drawing import EYE, LOOP_RADIUS, settled
-from eulerplateau.pictures.gallery import base64_of, cell_of
+from eulerplateau.mesh.drawing import EYE, LOOP_RADIUS, mean_normal, settled
+from eulerplateau.pictures.gallery import base64_of, cell_of, film_colours
 from eulerplateau.runs import Varied, Visited
 
 # No vertex is farther from the middle of a loop of length 1 than 1/2: 16 bits are 2e-5.
 _UNIT = 0.5 / 32767
 # A mark's direction, to half a degree round the wire.
 _INT8 = 127
+# Of a normal: less than a tenth of a degree.
+_NORMAL_DIGITS = 4
 # What is seen across and up at first, in units of L: the longest films are eights.
 _HALF_SIZE = 0.25, 0.17
 
@@ -41,6 +43,7 @@ class Stage:
         return {
             "x": base64_of(np.rint(x / _UNIT).astype("<i2")),
             "marks": marks,
+            "normal": np.round(mean_normal(x[point.shape.loop]), _NORMAL_DIGITS).tolist(),
             "radius": LOOP_RADIUS if point.radius is None else point.radius,
         }
 
@@ -86,6 +89,7 @@ def opening(name: str, varied: Sequence[Varied], shape: Shape) -> dict[str, Any]
         ],
         "unit": _UNIT,
         "size": 1.0,
+        "colours": film_colours(),
         "eye": EYE.tolist(),
         "halfSize": _HALF_SIZE,
         "vertices": len(shape.x),

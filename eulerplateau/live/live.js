@@ -12,6 +12,7 @@ let diagram = null;
 let film = null;
 let mesh = null; // { loop }: what never changes
 let tiles = null;
+let normal = null; // of the plane next to the film
 let asked = 0; // numbers what is asked
 const askedAt = new Map(); // when a slider asked
 let held = null; // the key of the slider that is held
@@ -55,11 +56,26 @@ function open(told) {
   find("varied").replaceChildren(...about.varied.map(slider));
   diagram = new VisitedDiagram(find("chart"), about.varied);
   try {
-    film = new Film(find("film"), { ...about, radius: 0 });
+    const antialias = !drawsInSoftware();
+    film = new Film(find("film"), { ...about, radius: 0, antialias }, makeScale);
   } catch {
+    find("scale").hidden = true;
     find("no-webgl").hidden = false;
   }
   makeLegend();
+}
+
+function makeScale() {
+  if (film && normal) film.tellScale(find, "L", normal);
+}
+
+// Whether there is no graphics card: smooth edges then take most of the time.
+function drawsInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const names = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe/i.test(name);
 }
 
 // A slider and a number to type, for one quantity.
@@ -145,6 +161,7 @@ function showNumbers(row) {
 function drawFilm(told) {
   if (told.triangles) tiles = decode(told.triangles, Uint32Array);
   const { x, marks, radius } = told.shape;
+  normal = told.shape.normal;
   const positions = Float32Array.from(decode(x, Int16Array), (value) => value * about.unit);
   film?.show(mesh, tiles, positions, marks && decode(marks, Int8Array), radius);
   document.body.dataset.drawn = told.points.at(-1).number;
@@ -217,4 +234,5 @@ for (const what of ["kick", "other", "begin", "save"]) {
 for (const axis of ["x", "y"]) find(axis).addEventListener("change", setAxes);
 find("show-all").addEventListener("click", () => diagram.whole());
 find("view").addEventListener("click", () => film?.firstView());
+find("above").addEventListener("click", () => film?.above(normal));
 connect();

@@ -80,10 +80,10 @@ class Browser:
         return self.driver.execute_script(f"return {script}", *arguments)
 
     def wait_for(self, happened: Callable[[], bool]) -> None:
-        """Wait until the page has dealt with what was done to it, for at most 10 s."""
+        """Wait until the page has dealt with what was done to it, for at most 60 s."""
         from selenium.webdriver.support.wait import WebDriverWait
 
-        WebDriverWait(self.driver, 10.0, 0.02).until(lambda _: happened())
+        WebDriverWait(self.driver, 60.0, 0.02).until(lambda _: happened())
 
     def complaints(self) -> list[str]:
         """Return what the page said since it was asked last, but for the driver's chat."""

@@ -5,4 +5,9 @@ from .collection import (
     collect as collect,
 )
 from .document import page as page
-from .parts import base64_of as base64_of, cell_of as cell_of, part as part
+from .parts import (
+    base64_of as base64_of,
+    cell_of as cell_of,
+    film_colours as film_colours,
+    part as part,
+)

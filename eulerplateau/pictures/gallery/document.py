@@ -13,9 +13,15 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
-from eulerplateau.mesh.drawing import ABOVE, BACK, FRONT, LOOP, is_flat, mean_normal
+from eulerplateau.mesh.drawing import ABOVE, is_flat, mean_normal
 from eulerplateau.pictures.gallery.collection import Exhibit, Gallery, Mesh
-from eulerplateau.pictures.gallery.parts import DIGITS, base64_of, cell_of, part
+from eulerplateau.pictures.gallery.parts import (
+    DIGITS,
+    base64_of,
+    cell_of,
+    film_colours,
+    part,
+)
 from eulerplateau.pictures.of_run import pictures_of
 from eulerplateau.pictures.wire import Wire, read_wire
 from eulerplateau.runs import Run, Series, without_noise
@@ -73,7 +79,7 @@ def _data(gallery: Gallery) -> dict[str, Any]:
         "size": stage.size,
         "eye": eye.tolist(),
         "length": stage.length,
-        "colours": [_hexadecimal(colour) for colour in (FRONT, BACK, LOOP)],
+        "colours": film_colours(),
         "halfSize": np.max(seen, axis=0).tolist(),
         "meshes": [_mesh(mesh) for mesh in gallery.meshes],
         "radius": max(max(run["radii"]) for run in made),
@@ -172,8 +178,3 @@ def _series(series: Series) -> dict[str, Any]:
         "last": series.last,
         "origin": series.start,
     }
-
-
-def _hexadecimal(colour: Sequence[float]) -> str:
-    """Return a colour (3,), 0 to 1, as HTML has it."""
-    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

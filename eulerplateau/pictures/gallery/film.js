@@ -8,16 +8,17 @@ class Film {
   static BAR = 64;
   static PARTS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
-  // `colours` are those of front, back and loop. `eye` points from the film to the camera; at first it sees `halfSize` [across, up], in
-  // the unit in which `size` is the length of a loop; no tube is thicker than `radius`.
-  constructor(canvas, { colours, eye, halfSize, size, radius }, onView) {
+  // `colours` are those of front, back and loop. `eye` points from the film to the camera; at
+  // first it sees `halfSize` [across, up], in the unit in which `size` is the length of a
+  // loop; no tube is thicker than `radius`. `onView` is called when the view has changed.
+  constructor(canvas, { colours, eye, halfSize, size, radius, antialias = true }, onView) {
     const L = Libraries;
     const [front, back, loop] = colours;
     this.onView = onView;
     this.halfSize = halfSize;
     this.largestRadius = radius;
     this.canvas = canvas;
-    this.renderer = new L.WebGLRenderer({ canvas, antialias: true });
+    this.renderer = new L.WebGLRenderer({ canvas, antialias });
     this.renderer.setClearColor("#ffffff");
     this.scene = new L.Scene();
     this.scene.add(new L.AmbientLight("#ffffff", 2.2));
@@ -131,6 +132,16 @@ class Film {
     const pixels = this.canvas.clientWidth * zoom / (right - left);
     const parts = Film.PARTS.find((count) => pixels / count <= Film.BAR) ?? Film.PARTS.at(-1);
     return { parts, pixels: pixels / parts };
+  }
+
+  // Writes to #bar, #length and #angle how long things are and from where they are seen;
+  // `unit` is the unit of length's name.
+  tellScale(find, unit, normal) {
+    const { parts, pixels } = this.bar();
+    find("bar").style.width = `${pixels}px`;
+    find("length").textContent = parts === 1 ? unit : `${unit}/${parts}`;
+    const height = this.height(normal);
+    find("angle").textContent = height === 90 ? "seen from above" : `${height}° above its plane`;
   }
 
   fit() {

@@ -36,14 +36,8 @@ function show(curve, place) {
   find("special").textContent = aboutSpecial(curve.run.special[row.special]);
 }
 
-// How long things are, and from where they are seen.
 function makeScale() {
-  if (!film || !shown) return;
-  const { parts, pixels } = film.bar();
-  find("bar").style.width = `${pixels}px`;
-  find("length").textContent = parts === 1 ? gallery.length : `${gallery.length}/${parts}`;
-  const height = film.height(normal());
-  find("angle").textContent = height === 90 ? "seen from above" : `${height}° above its plane`;
+  if (film && shown) film.tellScale(find, gallery.length, normal());
 }
 
 function normal() {

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eulerplateau.mesh.drawing import BACK, FRONT, LOOP
+
 # Of numbers: beyond what is shown.
 DIGITS = 10
 
@@ -24,6 +26,12 @@ def cell_of(value: Any) -> Any:
     if isinstance(value, float):
         return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
     return getattr(value, "value", value)
+
+
+def film_colours() -> list[str]:
+    """Return the colours of a film's front and back and of its loop, as HTML has them."""
+    colours = (FRONT, BACK, LOOP)
+    return ["#" + "".join(f"{round(255 * part):02x}" for part in one) for one in colours]
 
 
 def base64_of(array: NDArray[Any]) -> str:

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from eulerplateau.branches.family import Family
+from eulerplateau.branches.kinks import Kink, LostError, kink_between
 from eulerplateau.branches.point import (
     BranchPoint,
     Direction,
@@ -37,11 +38,18 @@ class Place:
     ----------
     step : float, arclength, of the next step if that can be corrected
     left : int, points that may still follow
+    kink : where the branch has one there; it goes on at `point`
     """
 
     point: BranchPoint
     step: float
     left: int
+    kink: Kink | None = None
+
+    @property
+    def end(self) -> BranchPoint:
+        """The last point of the smooth piece that leads there."""
+        return self.point if self.kink is None else self.kink.before
 
 
 def never(before: BranchPoint, after: BranchPoint) -> bool:
@@ -78,19 +86,31 @@ def next_place(
     control: StepControl,
     leaps: Callable[[BranchPoint, BranchPoint], bool] = never,
 ) -> Place | None:
-    """Return the next place on a branch; None if there is none, or there were enough."""
+    """Return the next place on a branch; None if there is none, or there were enough.
+
+    A step ends where the branch has a kink.
+    """
     if place.left == 0:
         return None
-    point, step, after = place.point, place.step, None
+    point, step, after, kink = place.point, place.step, None, None
     while after is None:
         after = advance(point, step, control)
         if after is None or (step > _LEAST_LEAP and leaps(point, after)):
-            after, step = None, 0.5 * step
+            after = None
+        else:
+            try:
+                kink = kink_between(point, after, control)
+            except LostError:
+                after = None
+        if after is None:
+            step *= 0.5
             if step < control.smallest_step:
                 return None
     if after.corrections <= _EASY:
         step = min(1.5 * step, control.largest_step)
-    return Place(recentred(after, control), step, place.left - 1)
+    if kink is not None:
+        after = kink.after
+    return Place(recentred(after, control), step, place.left - 1, kink)
 
 
 def advance(point: BranchPoint, step: float, control: StepControl) -> BranchPoint | None:

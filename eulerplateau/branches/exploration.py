@@ -11,7 +11,13 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.continuation import Place, next_place, outside
 from eulerplateau.branches.point import BranchPoint, StepControl
 from eulerplateau.branches.progress import KeptPoint, Lead, Progress
-from eulerplateau.branches.special import SpecialPoint, branches_from, leaps, special_points
+from eulerplateau.branches.special import (
+    SpecialPoint,
+    branches_from,
+    contact_point,
+    leaps,
+    special_points,
+)
 from eulerplateau.branches.symmetry import loop_distance
 
 # Two special points are one if their values agree to this (relative) and their loops to
@@ -112,7 +118,7 @@ def _stepped(
     if after is None:
         return progress.ended()
     visited = partial(DiagramPoint, progress.branch, progress.origin)
-    for special in special_points(before, after.point, control):
+    for special in _specials(before, after, control):
         number = _number(special, progress.met, control)
         known = number < len(progress.met)
         if not known:
@@ -125,14 +131,25 @@ def _stepped(
         progress, here=KeptPoint.of(after.point), step=after.step, left=after.left
     )
     stability = after.point.stability
-    # Where rounding hides an eigenvalue's sign, the next point decides.
-    if not stability.n_neutral or before.stability.n_neutral:
+    # Where rounding hides an eigenvalue's sign, the next point decides: of this branch,
+    # which beyond a kink has other modes.
+    sure = not stability.n_neutral or before.stability.n_neutral
+    if sure or after.kink is not None:
         then = replace(then, before=then.here)
     unstable = stability.n_unstable > limits.unstable_modes
     if unstable or limits.stop(after.point) or outside(after.point, control):
         then = then.ended()
     yield visited(after.point, then=then)
     return then
+
+
+def _specials(
+    before: BranchPoint, after: Place, control: StepControl
+) -> Iterator[SpecialPoint]:
+    """Yield the special points on the way to a place, and its kink if something happens."""
+    yield from special_points(before, after.end, control)
+    if after.kink is not None and after.kink.what:
+        yield contact_point(after.kink)
 
 
 def _with(

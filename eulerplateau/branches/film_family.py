@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint
-from eulerplateau.errors import SpecError
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.mesh import Shape
@@ -68,6 +67,13 @@ class FilmFamily:
         """Return the film that this was kept of."""
         return self._with(self.film.restored(kept))
 
+    def equilibrium(self, point: BranchPoint) -> Equilibrium:
+        """Return the equilibrium at a point of a branch of it."""
+        (problem, load), shape = self.at(point.value), self.film.shape(point.x)
+        found = problem.equilibrium(shape, point.model.tensions, load, Status.CONVERGED)
+        classified = replace(problem.classified(found), iterations=point.corrections)
+        return replace(classified, stability=point.stability)
+
     def _with(self, film: FilmOfLoop) -> FilmFamily:
         return self if film is self.film else replace(self, film=film)
 
@@ -79,24 +85,7 @@ def family_of(point: BranchPoint) -> FilmFamily:
 
 def equilibrium(point: BranchPoint) -> Equilibrium:
     """Return the equilibrium of a film at a point of one of its branches."""
-    family = family_of(point)
-    (problem, load), shape = family.at(point.value), family.film.shape(point.x)
-    found = problem.equilibrium(shape, point.model.tensions, load, Status.CONVERGED)
-    classified = problem.classified(found)
-    return replace(classified, iterations=point.corrections, stability=point.stability)
-
-
-def family_near(
-    problem: Problem, shape: Shape, parameter: str = "load", load: float = 0.0
-) -> tuple[FilmFamily, FloatArray]:
-    """Return the family good near a shape, and the shape's loop in its coordinates.
-
-    Raises SpecError for a loop with a diameter, whose contacts no branch knows.
-    """
-    if problem.loop.diameter is not None:
-        raise SpecError("diameter", "branches know no contact; solve and sweep do")
-    film = problem.film.of_loop(problem.film.prepared(shape))
-    return FilmFamily(problem, film, parameter, load), film.project(shape.x_loop)
+    return family_of(point).equilibrium(point)
 
 
 def likeness_of(problem: Problem, within: float) -> Likeness:

@@ -15,12 +15,8 @@ from eulerplateau.branches.exploration import (
     explore_from,
     explore_on,
 )
-from eulerplateau.branches.film_family import (
-    FilmFamily,
-    equilibrium,
-    family_near,
-    family_of,
-)
+from eulerplateau.branches.film_family import equilibrium, family_of
+from eulerplateau.branches.film_start import family_near, family_on
 from eulerplateau.branches.point import (
     BranchPoint,
     StepControl,
@@ -95,7 +91,8 @@ def film_point(
     found: Equilibrium, problem: Problem, control: StepControl, parameter: str = "load"
 ) -> BranchPoint:
     """Return the branch point at an equilibrium, heading for higher values."""
-    family, x_loop = family_near(problem, found.shape, parameter, found.load)
+    near = family_near(problem, found.shape, parameter, found.load, found.contacts)
+    family, x_loop = near
     return first_point(family, x_loop, problem.value(parameter, found.load), control)
 
 
@@ -263,7 +260,8 @@ def _continued(
     limits: Limits,
 ) -> Iterator[FilmPoint]:
     def explored() -> Iterator[DiagramPoint]:
-        family = FilmFamily(problem, problem.film.of_loop(problem.disk.shape), *varied)
+        film = problem.film.of_loop(problem.disk.shape)
+        family = family_on(problem, film, *varied)
         return explore_on(progress_from(progress, family), control, limits)
 
     for visited in stepwise(explored):

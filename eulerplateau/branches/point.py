@@ -137,6 +137,23 @@ def first_point(
     return BranchPoint(family, model, value, direction, 0.0, 0)
 
 
+def point_on(
+    family: Family, x: FloatArray, value: float, last: Direction, control: StepControl
+) -> BranchPoint | None:
+    """Return the branch point next to one of another family, turned the way of `last`.
+
+    It is all but an equilibrium; it is corrected across its own direction. None if lost.
+    """
+    energy = family.energy(value)
+    there = energy.constraint.project(x)
+    if there is None:
+        return None
+    model = tangent_model(energy, there)
+    slope = parameter_slope(family, energy, model)
+    way = branch_direction(model, slope, last, control)
+    return correct(family, there, value, way, control)
+
+
 def point_near(
     family: Family, x: FloatArray, value: float, least: float = 0.0
 ) -> BranchPoint | None:

@@ -19,6 +19,7 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.between import Interval, parameter_rate
 from eulerplateau.branches.continuation import advance, released
+from eulerplateau.branches.kinks import Kink
 from eulerplateau.branches.normal_form import NO_PART, part_along
 from eulerplateau.branches.point import (
     BranchPoint,
@@ -30,7 +31,7 @@ from eulerplateau.branches.point import (
 )
 from eulerplateau.branches.symmetry import ModeSymmetry, mode_symmetry
 
-FOLD, BIFURCATION = "fold", "bifurcation"
+FOLD, BIFURCATION, CONTACT = "fold", "bifurcation", "contact"
 
 # Arclength at which a branch is left for another: far enough for two distinct solutions
 # to be told apart, close enough to be certain of landing on the wanted one.
@@ -51,11 +52,11 @@ _LEVELLED = 0.25
 
 @dataclass(frozen=True, repr=False)
 class SpecialPoint:
-    """A point where an eigenvalue of the second variation vanishes.
+    """A point where an eigenvalue of the second variation vanishes, or contact changes.
 
     Attributes
     ----------
-    kind : FOLD or BIFURCATION
+    kind : FOLD or BIFURCATION, or CONTACT, where there is no critical displacement
     point : the equilibrium; at a bifurcation its direction is (q, 1), towards higher values
     mode : (n, d) float, the critical displacement phi
     eigenvalue : float, what is left of the critical eigenvalue
@@ -67,6 +68,7 @@ class SpecialPoint:
     arrived : bool
         Whether the branch it was found on is the one along phi, which ends here: beyond
         lies its mirror image.
+    contact : what happens to strands that touch, in a word; empty where nothing does
     """
 
     kind: str
@@ -78,6 +80,7 @@ class SpecialPoint:
     multiplicity: int
     symmetry: ModeSymmetry
     arrived: bool = False
+    contact: str = ""
 
     @property
     def breaks(self) -> tuple[str, ...]:
@@ -129,6 +132,26 @@ def special_points(
             yield found
 
 
+def contact_point(kink: Kink) -> SpecialPoint:
+    """Return a kink, where strands touch, part or split, as a special point.
+
+    Of its two sides the one with fewer unstable modes counts.
+    """
+    point = kink.before
+    n_unstable = min(at.stability.n_unstable for at in (point, kink.after))
+    return SpecialPoint(
+        kind=CONTACT,
+        point=point,
+        mode=np.zeros_like(point.x),
+        eigenvalue=float(point.stability.lowest),
+        error=kink.error,
+        n_unstable=n_unstable,
+        multiplicity=1,
+        symmetry=ModeSymmetry((), (), 0.0),
+        contact=kink.what,
+    )
+
+
 def leaps(before: BranchPoint, after: BranchPoint, control: StepControl) -> bool:
     """Return whether a step has left its branch for another that passes close by.
 
@@ -149,7 +172,7 @@ def leaps(before: BranchPoint, after: BranchPoint, control: StepControl) -> bool
 
 def branches_from(special: SpecialPoint, control: StepControl) -> Iterator[BranchPoint]:
     """Yield a first point on each side of the other branch through a bifurcation."""
-    if special.kind == FOLD:
+    if special.kind != BIFURCATION:
         return
     model = special.point.model
     away = special.point.direction

@@ -3,7 +3,10 @@ from .bending import Bending as Bending, inextensible as inextensible
 from .contacts import Contacts as Contacts
 from .curved_rod import CurvedRod as CurvedRod
 from .edges import Edges as Edges, edges_of as edges_of
-from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
+from .energy import (
+    Constraint as Constraint,
+    LoopEnergy as LoopEnergy,
+)
 from .equal_edges import EqualEdges as EqualEdges
 from .frames import Frame as Frame, directors as directors
 from .free_bending import FreeBending as FreeBending

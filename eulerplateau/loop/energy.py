@@ -46,6 +46,38 @@ class Constraint(Protocol):
         """
 
 
+class Bounds(Protocol):
+    """Inequalities of loops x (n, d), of which some hold as equations: gaps of strands."""
+
+    def margins(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return numbers (k,) that are not negative as long as the same ones do.
+
+        They are continuous along a branch; none where nothing is bounded.
+        """
+
+    def holds(self, x: FloatArray) -> bool:
+        """Return whether they are still said the way they should be at x."""
+
+    def reaches(self, x: FloatArray, other: FloatArray) -> bool:
+        """Return whether a short way leads to another loop: nothing passes through."""
+
+
+class Unbounded:
+    """No inequalities."""
+
+    def margins(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return none (0,)."""
+        return np.zeros(0)
+
+    def holds(self, x: FloatArray) -> bool:
+        """Return True."""
+        return True
+
+    def reaches(self, x: FloatArray, other: FloatArray) -> bool:
+        """Return True."""
+        return True
+
+
 @dataclass(frozen=True)
 class LoopEnergy:
     """A sum of terms, and what a solver must know to minimise it.
@@ -59,12 +91,14 @@ class LoopEnergy:
     free_motions : function of x (n, d)
         Returns displacements that keep the constraint and cost nothing, as columns
         (d n, m): rigid motions, sliding; none of a loop that is pinned.
+    bounds : what a branch of its loops must keep to besides, by default nothing
     """
 
     terms: Mapping[str, Term]
     constraint: Constraint
     weights: FloatArray
     free_motions: Callable[[FloatArray], FloatArray]
+    bounds: Bounds = Unbounded()
 
     @property
     def is_handed(self) -> bool:
@@ -132,9 +166,10 @@ class LoopEnergy:
         return sum(known[1:], start=known[0])
 
     def holds(self, x: FloatArray) -> bool:
-        """Return whether all terms are still good at x."""
-        return all(term.holds(x) for term in self.terms.values())
+        """Return whether all terms, and bounds, are still good at x."""
+        return self.bounds.holds(x) and all(term.holds(x) for term in self.terms.values())
 
     def reaches(self, x: FloatArray, other: FloatArray) -> bool:
-        """Return whether by all terms a short way leads from x to another loop."""
-        return all(term.reaches(x, other) for term in self.terms.values())
+        """Return whether by all that is known a short way leads from x to another loop."""
+        terms = self.terms.values()
+        return self.bounds.reaches(x, other) and all(t.reaches(x, other) for t in terms)

@@ -181,6 +181,11 @@ class Strands:
         slides = np.ones(len(gaps), dtype=bool)
         return self._followed(self._pieces(x), replace(gaps, slides=slides))[1]
 
+    def spreading(self, x: FloatArray, gaps: Gaps) -> FloatArray:
+        """Return d2D/ds2 (k,) at each of the places, D the least distance by t."""
+        held = np.zeros(len(gaps), dtype=bool)
+        return self._followed(self._pieces(x), replace(gaps, slides=held))[1]
+
     def laid_along(self, x: FloatArray, gaps: Gaps) -> BoolArray:
         """Return where (k,) strands touch at a point that lie along each other by now."""
         along: BoolArray = self.parting(x, gaps) < _STAYS * _PARTING

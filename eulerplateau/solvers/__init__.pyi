@@ -1,3 +1,4 @@
+from .contact.search import equilibrium_in_contact as equilibrium_in_contact
 from .descent import Descent as Descent
 from .equilibrium import (
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,

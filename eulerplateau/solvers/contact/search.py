@@ -11,7 +11,14 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import Contacts, Strands, close_with_lengths, strands_of
+from eulerplateau.loop import (
+    NO_GAPS,
+    Contacts,
+    Gaps,
+    Strands,
+    close_with_lengths,
+    strands_of,
+)
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.contact.descent import ContactDescent
 from eulerplateau.solvers.contact.keeping import Keeping, Touching
@@ -19,7 +26,7 @@ from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.renewal import Reached, elsewhere, near_shapes
-from eulerplateau.solvers.second_variation import stability
+from eulerplateau.solvers.second_variation import TangentModel, stability
 from eulerplateau.threads import one_thread
 
 # By which part of the diameter strands may overlap between the vertices they are held at.
@@ -145,6 +152,20 @@ def _record(
     # What vertices do not see of strands along each other is an edge's length's fault.
     coarse = found.converged and contacts.smallest_gap < -_OVERLAP * strands.diameter
     return replace(found, status=Status.UNRESOLVED) if coarse else found
+
+
+def equilibrium_in_contact(
+    problem: Problem,
+    strands: Strands,
+    load: float,
+    film: FilmOfLoop,
+    model: TangentModel,
+    gaps: Gaps,
+) -> Equilibrium:
+    """Return the equilibrium, stable or not, at which a model is made, some gaps closed."""
+    state = Touching(model, gaps, NO_GAPS, radius=0.0, iteration=0)
+    shape = film.shape(model.x)
+    return _record(problem, strands, load, film, state, shape, 0, Status.CONVERGED)
 
 
 def _contacts(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:

@@ -1,0 +1,114 @@
+"""Where a branch has a kink: what bounds its loops changes there, as strands that touch.
+
+Between kinks a branch is smooth, and so are its bounds' margins, none of which is negative.
+A kink is where the first of them vanishes. Beyond it another family of energies is good,
+with other gaps closed: there are two ways on in that, and bounds are kept to along one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Protocol, cast
+
+import numpy as np
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.between import Interval
+from eulerplateau.branches.family import Family
+from eulerplateau.branches.point import BranchPoint, StepControl, correct, point_on
+
+# Margins down to this are rounding's; and what rounding leaves of one.
+_ROUNDING, _MARGIN = 1e-9, 1e-12
+# Arclength below which a kink is the one a branch has just left; and that after which it
+# is looked at whether bounds are kept to.
+_LEFT = 1e-8
+_PROBE = 1e-4
+
+
+class BoundedFamily(Family, Protocol):
+    """A family whose energies have bounds with margins."""
+
+    def beyond(self, point: BranchPoint, which: int) -> tuple[Family, str]:
+        """Return the family that is good beyond a point where one of its margins vanishes.
+
+        And what happens there, in a word; nothing where only how it is said changes.
+        """
+
+
+class LostError(ArithmeticError):
+    """A step leads where it is not known what changes on the way: a shorter one may do."""
+
+
+@dataclass(frozen=True)
+class Kink:
+    """A place where a branch goes on in another family.
+
+    Attributes
+    ----------
+    before, after : the same equilibrium, where the branch comes to it and where it goes on
+    what : in a word, what happens; empty where only how it is said changes
+    error : what rounding in the margin can have moved the parameter by
+    """
+
+    before: BranchPoint
+    after: BranchPoint
+    what: str
+    error: float
+
+
+def margins(point: BranchPoint) -> FloatArray:
+    """Return by how much a point keeps to its bounds (k,)."""
+    return point.energy.bounds.margins(point.x, point.model.tensions)
+
+
+def kink_between(
+    before: BranchPoint, after: BranchPoint, control: StepControl
+) -> Kink | None:
+    """Return the first kink between two points of one family; None where there is none.
+
+    Raises LostError where a shorter step is needed to tell.
+    """
+    broken = np.flatnonzero(margins(after) < -_ROUNDING)
+    if not len(broken):
+        return None
+    interval = Interval(before, after, control)
+    found = [(_located(interval, int(which)), int(which)) for which in broken]
+    point, which = min(found, key=lambda pair: pair[0].arclength)
+    family, what = cast(BoundedFamily, point.family).beyond(point, which)
+    return Kink(point, _gone_on(point, family, control), what, _error(interval, point, which))
+
+
+def _located(interval: Interval, which: int) -> BranchPoint:
+    found = interval.locate(partial(_margin, which))
+    if found is None or found.arclength - interval.before.arclength < _LEFT:
+        raise LostError
+    return found
+
+
+def _error(interval: Interval, point: BranchPoint, which: int) -> float:
+    """Return what rounding can have moved the parameter by where a margin vanishes."""
+    rise = abs(_margin(which, interval.after) - _margin(which, interval.before))
+    arclength = (abs(_margin(which, point)) + _MARGIN) / rise * interval.length
+    eps = 4 * float(np.finfo(np.float64).eps)
+    return abs(point.direction.rate) * arclength + eps * interval.control.scale(point.value)
+
+
+def _margin(which: int, point: BranchPoint) -> float:
+    return float(margins(point)[which])
+
+
+def _gone_on(point: BranchPoint, family: Family, control: StepControl) -> BranchPoint:
+    """Return the point in another family, headed where bounds are kept to.
+
+    Raises LostError where that is neither way.
+    """
+    there = point_on(family, point.x, point.value, point.direction, control)
+    if there is None:
+        raise LostError
+    for way in (there.direction, there.direction.reversed()):
+        guess = there.x + _PROBE * way.displacement
+        near = correct(family, guess, there.value + _PROBE * way.rate, way, control)
+        if near is not None and (margins(near) >= -_ROUNDING).all():
+            return replace(there, direction=way, arclength=point.arclength)
+    raise LostError

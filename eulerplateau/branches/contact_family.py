@@ -68,7 +68,7 @@ class ContactFamily(FilmFamily):
     def beyond(self, point: BranchPoint, which: int) -> tuple[ContactFamily, str]:
         """Return the family beyond a point where one of its margins vanishes."""
         bounds = self.bounds(point.value)
-        touch, what = bounds.changed(point.x, point.model.tensions, which)
+        touch, what = bounds.beyond(point.x, point.model.tensions, which)
         return replace(self, touch=touch), what
 
     def bounds(self, value: float) -> GapBounds:
@@ -85,16 +85,15 @@ class ContactFamily(FilmFamily):
 
     def kept(self, x: FloatArray) -> Mapping[str, NDArray[Any]]:
         """Return what makes the film again, and which gaps are closed."""
-        gaps, line = self.touch.gaps, self.touch.line
-        own = {"s": gaps.s, "t": gaps.t, "slides": gaps.slides, "line": line}
+        own = {**vars(self.touch.gaps), "line": self.touch.line}
         touch = {f"touch.{name}": array for name, array in own.items()}
         return {**self.film.kept(x), **touch}
 
     def restored(self, kept: Mapping[str, NDArray[Any]]) -> ContactFamily:
         """Return the family that this was kept of."""
         s, t, slides, line = (kept[f"touch.{name}"] for name in ("s", "t", "slides", "line"))
-        touch = Touch(Gaps(s, t, slides), line)
-        return replace(self, film=self.film.restored(kept), touch=touch)
+        film, touch = self.film.restored(kept), Touch(Gaps(s, t, slides), line)
+        return replace(self, film=film, touch=touch)
 
 
 def touching(
@@ -112,12 +111,13 @@ def touching(
     near: Gaps | None = gaps
     for _ in range(_CHANGES):
         assert near is not None
-        made = replace(made, touch=GapBounds(strands, Touch(near, near.slides)).with_lines(x))
+        made = replace(made, touch=Touch(near, np.zeros(len(near), dtype=bool)))
         found = point_near(made, x, value, LEAST[family.parameter])
         if found is None:
             break
         x, bounds = found.x, made.bounds(value)
         near = bounds.mended(x, found.model.tensions)
         if near is None:
-            return replace(made, touch=bounds.settled(x)), x
+            told = bounds.told(x, found.model.tensions)
+            return replace(made, touch=replace(bounds, touch=told).settled(x)), x
     return made, x

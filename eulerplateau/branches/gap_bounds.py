@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
+from scipy.sparse.csgraph import connected_components
 
-from eulerplateau.arrays import BoolArray, FloatArray
-from eulerplateau.loop import ALONG, NO_GAPS, Gaps, Strands, passed
+from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.loop import ALONG, NO_GAPS, Gaps, Strands, passed, spread
 
 # Gaps are looked at up to this part of the diameter.
 _REACH = 0.5
@@ -20,22 +21,20 @@ _AT_ONCE, _ROUNDING = 1e-8, 1e-9
 # A place at which strands touch at a point may move by so much of an edge before it is
 # followed to where it is; a point where they lie almost along each other, by so much.
 _FOLLOWED, _CENTRED = 1.0, 0.02
-# d2D/ds2, in 1/L, below which strands that touch at a point are held as those that lie
-# along each other are, at the latest.
+# d2D/ds2, in 1/L, down to which strands touch at a point, and from which on they do so where
+# they are nearest: below, that is not told, and they are held where that was.
 _FLAT = 0.5
 
-FORCE, GAP, SPREAD = range(3)
+_FORCE, _GAP, _SPREAD = range(3)
 
 
 @dataclass(frozen=True)
 class Touch:
-    """Gaps that are closed, k of them, and where the strands lie along each other.
+    """Gaps that are closed, k of them.
 
     Attributes
     ----------
-    line : (k,) bool
-        Whether the contact is a line there: with d2D/ds2 no longer positive a point would
-        not be enough.
+    line : (k,) bool, whether the contact it is a place of is a line, or a point
     """
 
     gaps: Gaps
@@ -45,13 +44,8 @@ class Touch:
         """Return those of them that are chosen (k,)."""
         return Touch(self.gaps[chosen], self.line[chosen])
 
-    def joined(self, other: Touch) -> Touch:
-        """Return these and others behind them."""
-        line = np.concatenate([self.line, other.line])
-        return Touch(self.gaps.joined(other.gaps), line)
 
-
-NO_TOUCH = Touch(NO_GAPS, np.zeros(0, dtype=bool))
+NO_TOUCH = Touch(NO_GAPS, NO_GAPS.slides)
 
 
 @dataclass(frozen=True)
@@ -59,20 +53,22 @@ class GapBounds:
     """What keeps strands of a loop apart that touch here and there.
 
     Its margins: the least of the forces, in parts of the largest tension; the least of the
-    other gaps, in diameters; and the least d2D/ds2, in 1/L, where strands touch at a point,
-    or less it where that has become a line.
+    other gaps, in diameters; by how much strands spread from where they touch, 1/L: more
+    than not at all from a point, less from a line; and, from one that slides, more than flat.
     """
 
     strands: Strands
     touch: Touch
 
     def margins(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
-        """Return the three margins; those of what there is none of are positive."""
-        forces = self._forces(x, tensions)
-        _, widths = self._others(x)
-        spread = self._spread(x)
-        least = (float(each.min(initial=_REACH)) for each in (forces, widths, spread))
-        return np.array(list(least))
+        """Return the margins; those of what there is none of are positive."""
+        parts = (
+            self._forces(x, tensions),
+            self._others(x)[1],
+            self._kinds(x, tensions),
+            self._slopes(x),
+        )
+        return np.array([float(each.min(initial=_REACH)) for each in parts])
 
     def holds(self, x: FloatArray) -> bool:
         """Return whether gaps are of the kind, and at the places, they should be."""
@@ -82,21 +78,28 @@ class GapBounds:
         """Return whether no strand passes through another on a short way."""
         return not passed(x, other)
 
-    def changed(
-        self, x: FloatArray, tensions: FloatArray, which: int
-    ) -> tuple[Touch, str]:
+    def beyond(self, x: FloatArray, tensions: FloatArray, which: int) -> tuple[Touch, str]:
         """Return what touches beyond a loop where one of the margins vanishes.
 
-        And what happens there: strands touch or part, or a point of contact splits, or a
-        line of contact joins again; nothing where a line grows or shrinks.
+        And what happens there: strands touch or part, a point of contact splits into a line,
+        or that joins to a point; nothing where a line grows or shrinks by an edge.
         """
         held = self._at(x)
-        if which == FORCE:
-            return self._parted(held, self._forces(x, tensions) <= _AT_ONCE)
-        if which == GAP:
+        if which == _FORCE:
+            pulls = self._forces(x, tensions) <= _AT_ONCE
+            gone, left = held[pulls], held[~pulls]
+            parts = self.strands.unlike(gone.gaps, left.gaps, ALONG).any()
+            return left, "parts" if parts else ""
+        if which == _GAP:
             others, widths = self._others(x)
             return self._joined(held, others[widths <= _AT_ONCE])
-        return self._spread_out(held, self._spread(x) <= _AT_ONCE)
+        if which == _SPREAD:
+            turned = self._kinds(x, tensions) <= _AT_ONCE
+            what = "joins" if (turned & held.line).any() else "splits"
+            return replace(held, line=held.line ^ turned), what
+        flat = self._slopes(x) <= _AT_ONCE
+        gaps = replace(held.gaps, slides=held.gaps.slides & ~flat)
+        return replace(held, gaps=gaps), ""
 
     def mended(self, x: FloatArray, tensions: FloatArray) -> Gaps | None:
         """Return what touches if what pulls most is let go, or else what overlaps is closed.
@@ -108,27 +111,40 @@ class GapBounds:
             return gaps[forces > forces.min()]
         others, widths = self._others(x)
         overlaps = widths < -_ROUNDING
-        return gaps.joined(others.gaps[overlaps]) if overlaps.any() else None
+        return gaps.joined(others[overlaps]) if overlaps.any() else None
 
-    def with_lines(self, x: FloatArray) -> Touch:
-        """Return what touches, where a contact is a line told by how it lies alone."""
-        gaps = self._at(x).gaps
-        alone = self._alone(gaps)
-        flat = self.strands.spreading(x, gaps) < 0.0
-        return Touch(gaps, ~gaps.slides & (flat | ~alone))
+    def told(self, x: FloatArray, tensions: FloatArray) -> Touch:
+        """Return what touches, told whether at points or along lines."""
+        points = replace(self, touch=replace(self.touch, line=np.zeros_like(self.touch.line)))
+        return replace(self._at(x), line=points._kinds(x, tensions) < 0.0)
 
-    def _forces(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
-        """Return the forces (k,) in parts of the largest tension."""
-        scale = float(np.abs(tensions).max())
-        forces: FloatArray = -tensions[len(x) :] / scale
-        return forces
+    def settled(self, x: FloatArray) -> Touch:
+        """Return the gaps as they should be at x: the same object if they are so."""
+        gaps, strands = self.touch.gaps, self.strands
+        edge = strands.loop.rest_lengths.max()
+        at = self._at(x).gaps
+        lies = strands.laid_along(x, at)
+        single = ~at.slides & self._single(at) & (strands.spreading(x, at) >= _FLAT)
+        crosses = single & strands.crossing(x, at)
+        nearest, _ = strands.at(x, replace(at, slides=at.slides | single))
+        reach = np.where(single, _CENTRED, _FOLLOWED) * edge
+        moved = (np.abs(nearest.s - gaps.s) > reach) & (at.slides | single)
+        if not (lies | crosses | moved).any():
+            return self.touch
+        slides = (at.slides & ~lies) | crosses
+        return replace(self.touch, gaps=replace(nearest, slides=slides))
 
     def _at(self, x: FloatArray) -> Touch:
         """Return the gaps followed to a loop x (n, d)."""
         gaps, _ = self.strands.at(x, self.touch.gaps)
         return replace(self.touch, gaps=gaps)
 
-    def _others(self, x: FloatArray) -> tuple[Touch, FloatArray]:
+    def _forces(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the forces (k,) in parts of the largest tension."""
+        forces: FloatArray = -tensions[len(x) :] / float(np.abs(tensions).max())
+        return forces
+
+    def _others(self, x: FloatArray) -> tuple[Gaps, FloatArray]:
         """Return where else strands are near, and how near, in diameters."""
         strands, held = self.strands, self._at(x).gaps
         beside = held[~held.slides]
@@ -137,71 +153,50 @@ class GapBounds:
         near, widths = near[new], widths[new]
         # Alone, they are looked at where they are nearest, and not at a vertex.
         alone = ~near.slides & strands.unlike(near, beside, ALONG)
-        line = ~near.slides & ~alone
         if alone.any():
-            nearest = replace(near[alone], slides=alone[alone])
             try:
-                nearest, gaps = strands.at(x, nearest)
+                points, gaps = strands.at(x, replace(near[alone], slides=alone[alone]))
             except LinAlgError:
-                return Touch(near, line), widths / strands.diameter
-            points = replace(nearest, slides=~alone[alone])
-            near, line = near[~alone].joined(points), np.append(line[~alone], points.slides)
+                return near, widths / strands.diameter
+            near = near[~alone].joined(replace(points, slides=~alone[alone]))
             widths = np.append(widths[~alone], gaps)
             kept = strands.distinct(near) & strands.unlike(near, held)
-            near, line, widths = near[kept], line[kept], widths[kept]
-        return Touch(near, line), widths / strands.diameter
+            near, widths = near[kept], widths[kept]
+        return near, widths / strands.diameter
 
-    def _alone(self, gaps: Gaps) -> BoolArray:
+    def _joined(self, held: Touch, new: Gaps) -> tuple[Touch, str]:
+        """Return what touches with new places of contact, and whether those are alone."""
+        fresh = self.strands.unlike(new, held.gaps, ALONG)
+        lines = held.gaps[held.line]
+        line = np.append(held.line, ~self.strands.unlike(new, lines, ALONG))
+        return Touch(held.gaps.joined(new), line), "touches" if fresh.any() else ""
+
+    def _kinds(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return by how much each of the contacts (k,) is the point, or the line, it is."""
+        held, forces = self._at(x), -tensions[len(x) :]
+        contact = self._contact(held.gaps)
+        kinds = np.zeros(len(held.gaps))
+        for number in range(int(contact.max(initial=-1)) + 1):
+            own = contact == number
+            kinds[own] = spread(self.strands, x, held.gaps[own], forces[own])
+        return np.where(held.line, -kinds, kinds)
+
+    def _slopes(self, x: FloatArray) -> FloatArray:
+        """Return by how much strands (k,) spread more than flat where a contact slides."""
+        held = self._at(x).gaps
+        return np.where(held.slides, self.strands.spreading(x, held) - _FLAT, np.inf)
+
+    def _contact(self, gaps: Gaps) -> IntArray:
+        """Return the number of the contact (k,) of which each gap is a place."""
+        if not len(gaps):
+            return np.zeros(0, dtype=np.int64)
+        each = np.eye(len(gaps), dtype=bool)
+        beside = [~self.strands.unlike(gaps, gaps[here], ALONG) for here in each]
+        number: IntArray = connected_components(np.array(beside))[1].astype(np.int64)
+        return number
+
+    def _single(self, gaps: Gaps) -> BoolArray:
         """Return which places (k,) have no other beside them."""
-        near = [
-            not self.strands.unlike(gaps[here], gaps[~here], ALONG)[0]
-            for here in np.eye(len(gaps), dtype=bool)
-        ]
-        return ~np.array(near, dtype=bool)
-
-    def _spread(self, x: FloatArray) -> FloatArray:
-        """Return by how much the kind of each of the contacts (k,) is what it should be."""
-        held = self._at(x)
-        gaps, line = held.gaps, held.line
-        spread = self.strands.spreading(x, gaps)
-        spread[gaps.slides] -= _FLAT
-        spread[line] *= -1
-        spread[~gaps.slides & ~self._alone(gaps)] = np.inf
-        return spread
-
-    def _parted(self, held: Touch, pulls: BoolArray) -> tuple[Touch, str]:
-        gone, left = held[pulls], held[~pulls]
-        parts = self.strands.unlike(gone.gaps, left.gaps, ALONG).any()
-        return left, "parts" if parts else ""
-
-    def _joined(self, held: Touch, new: Touch) -> tuple[Touch, str]:
-        fresh = self.strands.unlike(new.gaps, held.gaps, ALONG)
-        beside = ~self.strands.unlike(held.gaps, new.gaps, ALONG)
-        splits = bool((beside & ~held.line).any())
-        held, new = replace(held, line=held.line | beside), replace(new, line=~fresh)
-        what = "touches" if fresh.any() else "splits" if splits else ""
-        return held.joined(new), what
-
-    def _spread_out(self, held: Touch, changes: BoolArray) -> tuple[Touch, str]:
-        points = changes & held.gaps.slides
-        turned = changes & ~held.gaps.slides
-        gaps = replace(held.gaps, slides=held.gaps.slides & ~points)
-        joins = turned & held.line
-        what = "joins" if joins.any() else "splits" if turned.any() else ""
-        return Touch(gaps, held.line ^ turned), what
-
-    def settled(self, x: FloatArray) -> Touch:
-        """Return the gaps as they should be at x: the same object if they are so."""
-        touch, strands = self.touch, self.strands
-        edge = strands.loop.rest_lengths.max()
-        at = self._at(x).gaps
-        lies = strands.laid_along(x, at)
-        single = ~at.slides & ~touch.line & self._alone(at)
-        crosses = single & strands.crossing(x, at)
-        nearest, _ = strands.at(x, replace(at, slides=at.slides | single))
-        reach = np.where(single, _CENTRED, _FOLLOWED) * edge
-        moved = (np.abs(nearest.s - touch.gaps.s) > reach) & (at.slides | single)
-        if not (lies | crosses | moved).any():
-            return touch
-        slides = (at.slides & ~lies) | crosses
-        return replace(touch, gaps=replace(nearest, slides=slides))
+        contact = self._contact(gaps)
+        single: BoolArray = np.bincount(contact)[contact] == 1
+        return single

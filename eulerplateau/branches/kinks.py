@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import product
 from typing import Protocol, cast
 
 import numpy as np
@@ -20,10 +21,10 @@ from eulerplateau.branches.point import BranchPoint, StepControl, correct, point
 
 # Margins down to this are rounding's; and what rounding leaves of one.
 _ROUNDING, _MARGIN = 1e-9, 1e-12
-# Arclength below which a kink is the one a branch has just left; and that after which it
-# is looked at whether bounds are kept to.
+# Arclength below which a kink is the one a branch has just left; and those after which it
+# is looked at whether bounds are kept to: the next kink may be near.
 _LEFT = 1e-8
-_PROBE = 1e-4
+_PROBES = 1e-4, 1e-5, 1e-6, 1e-7
 
 
 class BoundedFamily(Family, Protocol):
@@ -106,9 +107,10 @@ def _gone_on(point: BranchPoint, family: Family, control: StepControl) -> Branch
     there = point_on(family, point.x, point.value, point.direction, control)
     if there is None:
         raise LostError
-    for way in (there.direction, there.direction.reversed()):
-        guess = there.x + _PROBE * way.displacement
-        near = correct(family, guess, there.value + _PROBE * way.rate, way, control)
+    ways = there.direction, there.direction.reversed()
+    for probe, way in product(_PROBES, ways):
+        guess = there.x + probe * way.displacement
+        near = correct(family, guess, there.value + probe * way.rate, way, control)
         if near is not None and (margins(near) >= -_ROUNDING).all():
             return replace(there, direction=way, arclength=point.arclength)
     raise LostError

@@ -87,6 +87,11 @@ class Strands:
         norm = np.diag(loop.mean_lengths) + _SPREAD**4 * loop.bending_matrix
         return np.linalg.inv(norm).astype(np.float64, copy=False)
 
+    def weights(self, s: FloatArray) -> FloatArray:
+        """Return phi_v(s) (k, n), by which vertices make the curve at places s (k,)."""
+        weights: FloatArray = self._basis(s % self.knots[-1])
+        return weights
+
     def curve(self, x: FloatArray) -> CubicSpline:
         """Return the smooth curve through vertices x (n, d)."""
         return CubicSpline(self.knots, np.vstack([x, x[:1]]), bc_type="periodic")

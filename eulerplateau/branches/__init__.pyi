@@ -35,6 +35,7 @@ from .progress import Arrays as Arrays, progress_from as progress_from
 from .scaling import PowerLaw as PowerLaw, fit_power as fit_power
 from .special import (
     BIFURCATION as BIFURCATION,
+    CONTACT as CONTACT,
     FOLD as FOLD,
     SpecialPoint as SpecialPoint,
     branches_from as branches_from,

@@ -39,7 +39,8 @@ def branches(
     """Follow the branches of equilibria of RUN.toml, stable and unstable, through folds.
 
     Writes branches.csv (one row per point), special_points.csv (folds and bifurcations,
-    their loads located by an eigenvalue's crossing), shapes/*.vtp with the critical
+    their loads located by an eigenvalue's crossing, and where strands of a loop with a
+    diameter touch, part or split), shapes/*.vtp with the critical
     modes, branches.pvd (for ParaView), run.json, branches.png.
     """
     begin(out)
@@ -95,11 +96,12 @@ def _report(result: Exploration, drawn: list[str]) -> None:
     load = result.rows[0].load_name
     for point in result.special:
         times = multiple(int(point["multiplicity"]))
+        what = f" ({point['contact']})" if point.get("contact") else ""
         place, error = (
             load.shown(float(point[name])) for name in (load.column, f"{load.column}_error")
         )
         click.echo(
-            f"{point['kind']} {point['number']}{times} at {load.text} = "
+            f"{point['kind']} {point['number']}{times}{what} at {load.text} = "
             f"{place:.8g} +- {error:.1g} on branch {point['branch']}, "
             f"breaks: {point['breaks'] or 'nothing'}"
         )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eulerplateau.branches import BIFURCATION, FOLD
+from eulerplateau.branches import BIFURCATION, CONTACT, FOLD
 from eulerplateau.errors import OutputError
 from eulerplateau.pictures.figure import (
     BLACK,
@@ -52,6 +52,7 @@ _POINT: dict[str, Any] = {"linestyle": "none", "color": BLACK, "zorder": 3.5}
 _MARKERS: dict[str, dict[str, Any]] = {
     BIFURCATION: {**_POINT, "marker": "o", "markersize": 4.5, "markerfacecolor": "white"},
     FOLD: {**_POINT, "marker": "D", "markersize": 4.0},
+    CONTACT: {**_POINT, "marker": "^", "markersize": 4.5, "markerfacecolor": "0.7"},
 }
 _NOT_CONVERGED: dict[str, Any] = {**_POINT, "marker": "x", "markersize": 5.0, "zorder": 4}
 _LEADER: dict[str, Any] = {
@@ -112,7 +113,7 @@ def _loads(run: Run) -> dict[int, float]:
 
 
 def _kinds(run: Run) -> dict[int, str]:
-    """Return the kinds, FOLD or BIFURCATION, of the special points by number."""
+    """Return the kinds, FOLD, BIFURCATION or CONTACT, of the special points by number."""
     try:
         return {number: run.special[number]["kind"] for number in _loads(run)}
     except KeyError:

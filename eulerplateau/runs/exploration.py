@@ -49,6 +49,7 @@ _AFTER = (
     "branch", "step", "n_unstable", "eigenvalue", "multiplicity", "transverse", "breaks",
     "keeps",
 )  # fmt: skip
+_CONTACT = "contact"
 SPECIAL_COLUMNS = (*_BEFORE, *_LOADS, *_AFTER)
 
 
@@ -94,14 +95,14 @@ def run_branches(
     started = time.perf_counter()
     if spec.film.plane:
         raise SpecError("film.plane", "should be false: branches leave the plane")
-    spec.loop.refuse_thickness("branches")
     disk = make_mesh(spec)
     problem = make_problem(spec, disk)
     window, held, quantity = spec.window(), spec.held, spec.column(spec.explored)
-    varied, rod = in_problem(spec.explored), (spec.twist_ratio, spec.loop.rest_curvature)
-    row_type = film_kind(*rod, quantity).branch_row
+    varied, thickness = in_problem(spec.explored), spec.diameter
+    rod = spec.twist_ratio, spec.loop.rest_curvature
+    row_type = film_kind(*rod, quantity, thickness).branch_row
     opening = Opening("branches", row_type, quantity, overwrite)
-    names = special_columns(opening.quantity)
+    names = special_columns(opening.quantity, thickness)
     with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run
         special = special_of(run.rows, run.folder.path)
@@ -148,23 +149,28 @@ def _recorded(
             **spec.cells_at(point.equilibrium.load),
         )
         if point.special is not None and not point.known:
-            special.append(_special(row, point.special, point.problem.film.load))
+            told = _special(row, point.special, point.problem.film.load)
+            if point.problem.loop.diameter is not None:
+                told[_CONTACT] = point.special.contact
+            special.append(told)
         keep_point(run, point, names, special)
         yield row
 
 
-def special_columns(quantity: str) -> tuple[str, ...]:
+def special_columns(quantity: str, diameter: float | None = None) -> tuple[str, ...]:
     """Return the columns of the special points of a run, by the column of what it varies.
 
-    Where that is no load, both loads are there too, which are held.
+    Where that is no load, both loads are there too, which are held. Of a loop that has a
+    diameter there is one for what happens to its strands.
     """
+    after = _AFTER if diameter is None else (*_AFTER, _CONTACT)
     own = own_parameter(quantity)
     if own is None:
-        return SPECIAL_COLUMNS
+        return *_BEFORE, *_LOADS, *after
     varied = own.column, f"{own.column}_error"
     if own.column not in LOOP_PARAMETERS:
-        return *_BEFORE, *varied, *_LOADS, *_AFTER
-    return *_BEFORE, *varied, "kL3_alpha", "sigma_hat", *_AFTER
+        return *_BEFORE, *varied, *_LOADS, *after
+    return *_BEFORE, *varied, "kL3_alpha", "sigma_hat", *after
 
 
 def _start(

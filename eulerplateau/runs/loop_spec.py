@@ -58,5 +58,5 @@ class LoopSettings(Settings):
     def refuse_thickness(self, who: str) -> None:
         """Raise SpecError where the loop has a diameter and `who` know no contact."""
         if self.diameter is not None:
-            problem = f"should be absent: {who} know no contact; a sweep by newton does"
+            problem = f"should be absent: {who} know no contact; sweeps and branches do"
             raise SpecError("loop.diameter", problem)

@@ -163,9 +163,12 @@ class Branch(Series):
     ) -> Iterator[tuple[bool, slice]]:
         """Yield the stretches of like stability, and whether they are stable.
 
-        A point and the next that are `apart` (n - 1,) belong to no stretch together.
+        A point and the next that are `apart` (n - 1,) belong to no stretch together, nor do
+        those that are one: there the branch has a kink.
         """
-        gaps = np.zeros_like(self.stable) if apart is None else apart
+        gaps = np.diff([row.arclength for row in self.rows]) == 0.0
+        if apart is not None:
+            gaps |= apart
         kinds = enumerate(zip(self.stable.tolist(), gaps.tolist(), strict=True))
         for (stable, gap), alike in groupby(kinds, key=lambda numbered: numbered[1]):
             places = [place for place, _ in alike]
@@ -255,7 +258,9 @@ def _one_way(rows: Sequence[Any]) -> list[Any]:
     found = list(rows[:1])
     for row in rows[1:]:
         way = np.sign(row.load - found[-1].load)
-        if way == 0 or (len(found) > 1 and way != np.sign(found[1].load - found[0].load)):
+        if way == 0:  # where the branch has a kink, it is told from both sides
+            continue
+        if len(found) > 1 and way != np.sign(found[1].load - found[0].load):
             break
         found.append(row)
     return found

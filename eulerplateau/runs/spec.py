@@ -154,8 +154,6 @@ class RunSpec(Settings):
         if self.solver.name != "newton":
             problem = f"found {self.solver.name!r}; should be 'newton' with loop.diameter"
             raise SpecError("solver.name", problem)
-        if self.output.modes:
-            raise SpecError("output.modes", "should be 0 with loop.diameter")
         if self.loop.diameter == "rod" and self.sweep.varied == "length":
             problem = "should be a number along a length: the rod's would change with it"
             raise SpecError("loop.diameter", problem)

@@ -54,7 +54,8 @@ function line(label, value, unit) {
 
 function aboutSpecial(special) {
   if (!special) return "";
-  const { kind, number, breaks, keeps } = special;
+  const { kind, number, breaks, keeps, contact } = special;
+  if (contact) return `Point ${number}: contact ${contact}.`;
   return `Point ${number}, a ${kind}. Its mode breaks: ${breaks || "no symmetry"}. `
     + `It keeps: ${keeps || "none"}.`;
 }

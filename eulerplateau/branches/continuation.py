@@ -23,6 +23,7 @@ from eulerplateau.branches.point import (
     correct,
     inner,
     make_direction,
+    parameter_drift,
 )
 
 _EASY = 4  # corrections up to which the step may grow
@@ -135,7 +136,8 @@ def _kept(point: BranchPoint, after: BranchPoint, control: StepControl) -> Direc
     if len(point.model.gradient) == len(model.gradient):
         return point.direction
     coefficients = model.coefficients(point.direction.displacement)
-    return make_direction(model, coefficients, point.direction.rate, control)
+    drift = parameter_drift(after.family, after.energy, model)
+    return make_direction(model, coefficients, point.direction.rate, control, drift)
 
 
 def recentred(point: BranchPoint, control: StepControl) -> BranchPoint:

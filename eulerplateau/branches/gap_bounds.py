@@ -12,7 +12,16 @@ from scipy.linalg import LinAlgError
 from scipy.sparse.csgraph import connected_components
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
-from eulerplateau.loop import ALONG, NO_GAPS, Gaps, Strands, passed, spread
+from eulerplateau.loop import (
+    ALONG,
+    NO_GAPS,
+    Gaps,
+    HeldGaps,
+    Lengths,
+    Strands,
+    passed,
+    spread,
+)
 
 # Gaps are looked at up to this part of the diameter.
 _REACH = 0.5
@@ -25,7 +34,7 @@ _FOLLOWED, _CENTRED = 1.0, 0.02
 # they are nearest: below, that is not told, and they are held where that was.
 _FLAT = 0.5
 
-_FORCE, _GAP, _SPREAD = range(3)
+_FORCE, _GAP, _KIND = range(3)
 
 
 @dataclass(frozen=True)
@@ -78,6 +87,17 @@ class GapBounds:
         """Return whether no strand passes through another on a short way."""
         return not passed(x, other)
 
+    def drift(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return how a loop (n, d) moves so that gaps stay closed as the diameter rises."""
+        if parameter != "diameter":
+            return None
+        loop = self.strands.loop
+        held = HeldGaps(Lengths(loop), self.strands, self.touch.gaps)
+        scale = np.repeat(np.sqrt(loop.mean_lengths), x.shape[1])
+        rises = np.repeat([0.0, 1.0], [len(x), len(self.touch.gaps)])
+        moved = np.linalg.lstsq(held.jacobian(x) / scale, rises, rcond=None)[0] / scale
+        return moved.reshape(x.shape)
+
     def beyond(self, x: FloatArray, tensions: FloatArray, which: int) -> tuple[Touch, str]:
         """Return what touches beyond a loop where one of the margins vanishes.
 
@@ -93,7 +113,7 @@ class GapBounds:
         if which == _GAP:
             others, widths = self._others(x)
             return self._joined(held, others[widths <= _AT_ONCE])
-        if which == _SPREAD:
+        if which == _KIND:
             turned = self._kinds(x, tensions) <= _AT_ONCE
             what = "joins" if (turned & held.line).any() else "splits"
             return replace(held, line=held.line ^ turned), what

@@ -22,6 +22,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.point import pull
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import Directional, TangentModel, directional
 
@@ -158,10 +159,10 @@ def part_along(
     parameter : that of the branch, or another one of the energy's
     unit : float, a change of it that counts, as a StepControl's
     """
-    pull = energy.rate(parameter, model.x)
-    slope = model.slope(pull)
+    pulled = pull(parameter, energy, model)
+    slope = model.slope(pulled)
     held = energy.constraint.force(model.x, model.tensions)
     forces = [force / unit for force in (*energy.forces(model.x), held)]
-    sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pull, *forces)]
+    sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pulled, *forces)]
     size = max(float(np.linalg.norm(slope)), _IDLE * max(sizes))
     return abs(float(slope @ mode)) / size

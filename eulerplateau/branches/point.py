@@ -10,7 +10,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.family import Family
 from eulerplateau.interruption import heed
-from eulerplateau.loop import LoopEnergy
+from eulerplateau.loop import LoopEnergy, product
 from eulerplateau.solvers import (
     RESIDUAL_TOLERANCE,
     Stability,
@@ -133,7 +133,8 @@ def first_point(
     model = tangent_model(energy, x)
     upwards = Direction(np.zeros_like(x), control.unit)
     slope = parameter_slope(family, energy, model)
-    direction = branch_direction(model, slope, upwards, control)
+    drift = parameter_drift(family, energy, model)
+    direction = branch_direction(model, slope, upwards, control, drift)
     return BranchPoint(family, model, value, direction, 0.0, 0)
 
 
@@ -150,7 +151,8 @@ def point_on(
         return None
     model = tangent_model(energy, there)
     slope = parameter_slope(family, energy, model)
-    way = branch_direction(model, slope, last, control)
+    drift = parameter_drift(family, energy, model)
+    way = branch_direction(model, slope, last, control, drift)
     return correct(family, there, value, way, control)
 
 
@@ -229,23 +231,28 @@ def _correct(
             energy = family.energy(value)
             model = tangent_model(energy, x)
             slope = parameter_slope(family, energy, model)
+            drift = parameter_drift(family, energy, model)
         except LinAlgError:  # no film on this loop
             return None
         off = inner(model, direction, Direction(x - guess, value - guessed), control)
         settled = model.residual <= max(4 * model.rounding, 1e-13)
         stuck = model.residual < RESIDUAL_TOLERANCE**1.5 and model.residual > 0.5 * best
         if settled or stuck:
-            tangent = branch_direction(model, slope, direction, control)
+            tangent = branch_direction(model, slope, direction, control, drift)
             return BranchPoint(family, model, value, tangent, 0.0, corrections)
         best = min(best, model.residual)
-        system = _bordered(model, slope, direction, control)
+        system = _bordered(model, slope, direction, control, drift)
         rhs = -np.append(model.gradient, off)
         try:
             shift = _solve(system, rhs, smallest)
         except LinAlgError:
             return None
-        x = constraint.project(x + model.displacement(shift[:-1]))
-        value = value + float(shift[-1])
+        moved, more = model.displacement(shift[:-1]), float(shift[-1])
+        value = value + more
+        if drift is not None:
+            moved = moved + more * drift
+            constraint = family.energy(value).constraint
+        x = constraint.project(x + moved)
     return None
 
 
@@ -256,35 +263,73 @@ def _solve(system: FloatArray, rhs: FloatArray, smallest: float) -> FloatArray:
 
 
 def branch_direction(
-    model: TangentModel, slope: FloatArray, last: Direction, control: StepControl
+    model: TangentModel,
+    slope: FloatArray,
+    last: Direction,
+    control: StepControl,
+    drift: FloatArray | None = None,
 ) -> Direction:
     """Return the branch's direction at an equilibrium, turned the way of `last`.
 
-    `slope` (m,) is the model's parameter_slope. The null vector of [H, b]: bordering by
-    `last` would have to find one near `last`, also where a step has landed on a branch
+    `slope` (m,) is the model's parameter_slope, `drift` as of make_direction. The null
+    vector of [H, b]: bordering by `last` would have to find one near `last`, also where a step has landed on a branch
     that crosses.
     """
     wide = np.column_stack([model.hessian, slope * control.unit])
     null = np.linalg.qr(wide.T, mode="complete")[0][:, -1]
-    found = make_direction(model, null[:-1], null[-1] * control.unit, control)
+    found = make_direction(model, null[:-1], null[-1] * control.unit, control, drift)
     return found if inner(model, found, last, control) >= 0 else found.reversed()
 
 
 def make_direction(
-    model: TangentModel, coefficients: FloatArray, rate: float, control: StepControl
+    model: TangentModel,
+    coefficients: FloatArray,
+    rate: float,
+    control: StepControl,
+    drift: FloatArray | None = None,
 ) -> Direction:
-    """Return the direction with these tangent coefficients, scaled to unit arclength."""
-    size = float(np.sqrt(coefficients @ coefficients + (rate / control.unit) ** 2))
-    return Direction(model.displacement(coefficients / size), rate / size)
+    """Return the direction with these tangent coefficients, scaled to unit arclength.
+
+    `drift` (n, d) is how the loop moves besides, per change of the parameter, where that
+    changes what it is held to.
+    """
+    square = coefficients @ coefficients + (rate / control.unit) ** 2
+    if drift is not None:
+        # It is the least displacement, and across all that keep what the loop is held to.
+        square += rate**2 * (model.weights @ np.sum(drift**2, axis=1))
+    size = float(np.sqrt(square))
+    moved = model.displacement(coefficients / size)
+    if drift is not None:
+        moved = moved + rate / size * drift
+    return Direction(moved, rate / size)
+
+
+def pull(parameter: str, energy: LoopEnergy, model: TangentModel) -> FloatArray:
+    """Return the derivative of the forces (n, d) by a parameter, along the loop's drift."""
+    drift = energy.bounds.drift(parameter, model.x)
+    if drift is None:
+        return energy.rate(parameter, model.x)
+    return product(energy.lagrangian_hessian(model.x, model.tensions), drift)
 
 
 def parameter_slope(family: Family, energy: LoopEnergy, model: TangentModel) -> FloatArray:
     """Return b = dg/dparameter (m,), g the model's gradient."""
-    return model.slope(energy.rate(family.parameter, model.x))
+    return model.slope(pull(family.parameter, energy, model))
+
+
+def parameter_drift(
+    family: Family, energy: LoopEnergy, model: TangentModel
+) -> FloatArray | None:
+    """Return the loop's drift (n, d) with the parameter; None where it has none."""
+    return energy.bounds.drift(family.parameter, model.x)
 
 
 def _bordered(
-    model: TangentModel, slope: FloatArray, direction: Direction, control: StepControl
+    model: TangentModel,
+    slope: FloatArray,
+    direction: Direction,
+    control: StepControl,
+    drift: FloatArray | None,
 ) -> FloatArray:
     """Return [[H, b], [normal^T, rate / unit^2]]: regular at folds, where H is not."""
     m = len(slope)
@@ -293,4 +338,6 @@ def _bordered(
     system[:m, m] = slope
     system[m, :m] = model.coefficients(direction.displacement)
     system[m, m] = direction.rate / control.unit**2
+    if drift is not None:
+        system[m, m] += model.weights @ np.sum(direction.displacement * drift, axis=1)
     return system

@@ -27,6 +27,7 @@ from eulerplateau.branches.point import (
     StepControl,
     correct,
     make_direction,
+    parameter_drift,
     parameter_slope,
 )
 from eulerplateau.branches.symmetry import ModeSymmetry, mode_symmetry
@@ -242,7 +243,8 @@ def _through(point: BranchPoint, index: int, control: StepControl) -> Direction:
     others = np.arange(len(values)) != index
     slope = vectors[:, others].T @ parameter_slope(point.family, point.energy, point.model)
     response = -vectors[:, others] @ (slope / values[others])
-    return make_direction(point.model, response, 1.0, control)
+    drift = parameter_drift(point.family, point.energy, point.model)
+    return make_direction(point.model, response, 1.0, control, drift)
 
 
 def _step_along(

@@ -38,7 +38,13 @@ from .rod import Rod as Rod
 from .spreads import spread as spread
 from .strands import Strands as Strands, strands_of as strands_of
 from .stretches import ALONG as ALONG, evenly as evenly
-from .term import LEAST as LEAST, MOST as MOST, OwnTerm as OwnTerm, Term as Term
+from .term import (
+    LEAST as LEAST,
+    MOST as MOST,
+    OwnTerm as OwnTerm,
+    Term as Term,
+    product as product,
+)
 from .turns import (
     EdgeTurns as EdgeTurns,
     LengthMetric as LengthMetric,

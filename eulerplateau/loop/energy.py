@@ -61,6 +61,13 @@ class Bounds(Protocol):
     def reaches(self, x: FloatArray, other: FloatArray) -> bool:
         """Return whether a short way leads to another loop: nothing passes through."""
 
+    def drift(self, parameter: str, x: FloatArray) -> FloatArray | None:
+        """Return how a loop (n, d) must move for what is an equation of it to stay one.
+
+        That is the least displacement, for a parameter that rises by 1; None where the
+        equations do not depend on it.
+        """
+
 
 class Unbounded:
     """No inequalities."""
@@ -76,6 +83,9 @@ class Unbounded:
     def reaches(self, x: FloatArray, other: FloatArray) -> bool:
         """Return True."""
         return True
+
+    def drift(self, parameter: str, x: FloatArray) -> None:
+        """Return None."""
 
 
 @dataclass(frozen=True)

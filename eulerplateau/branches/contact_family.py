@@ -91,7 +91,9 @@ class ContactFamily(FilmFamily):
 
     def restored(self, kept: Mapping[str, NDArray[Any]]) -> ContactFamily:
         """Return the family that this was kept of."""
-        s, t, slides, line = (kept[f"touch.{name}"] for name in ("s", "t", "slides", "line"))
+        s, t, slides, line = (
+            kept[f"touch.{name}"] for name in ("s", "t", "slides", "line")
+        )
         film, touch = self.film.restored(kept), Touch(Gaps(s, t, slides), line)
         return replace(self, film=film, touch=touch)
 

@@ -14,7 +14,6 @@ from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.mesh import Shape
 from eulerplateau.solvers import Equilibrium, Problem, Status
 
 

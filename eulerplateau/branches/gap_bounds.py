@@ -30,8 +30,8 @@ _AT_ONCE, _ROUNDING = 1e-8, 1e-9
 # A place at which strands touch at a point may move by so much of an edge before it is
 # followed to where it is; a point where they lie almost along each other, by so much.
 _FOLLOWED, _CENTRED = 1.0, 0.02
-# d2D/ds2, in 1/L, down to which strands touch at a point, and from which on they do so where
-# they are nearest: below, that is not told, and they are held where that was.
+# d2D/ds2, in 1/L, down to which strands touch at a point, where they are nearest: below,
+# that is not told, and they are held where it was.
 _FLAT = 0.5
 
 _FORCE, _GAP, _KIND = range(3)
@@ -62,8 +62,8 @@ class GapBounds:
     """What keeps strands of a loop apart that touch here and there.
 
     Its margins: the least of the forces, in parts of the largest tension; the least of the
-    other gaps, in diameters; by how much strands spread from where they touch, 1/L: more
-    than not at all from a point, less from a line; and, from one that slides, more than flat.
+    other gaps, in diameters; by how much strands spread, or spread less, from where they
+    touch at a point, or along a line, 1/L; and by how much more than flat where that slides.
     """
 
     strands: Strands
@@ -96,13 +96,14 @@ class GapBounds:
         scale = np.repeat(np.sqrt(loop.mean_lengths), x.shape[1])
         rises = np.repeat([0.0, 1.0], [len(x), len(self.touch.gaps)])
         moved = np.linalg.lstsq(held.jacobian(x) / scale, rises, rcond=None)[0] / scale
-        return moved.reshape(x.shape)
+        drift: FloatArray = moved.reshape(x.shape)
+        return drift
 
     def beyond(self, x: FloatArray, tensions: FloatArray, which: int) -> tuple[Touch, str]:
         """Return what touches beyond a loop where one of the margins vanishes.
 
-        And what happens there: strands touch or part, a point of contact splits into a line,
-        or that joins to a point; nothing where a line grows or shrinks by an edge.
+        And what happens there: strands touch or part, a point of contact splits into a
+        line, or that joins to a point; nothing where a line grows or shrinks by an edge.
         """
         held = self._at(x)
         if which == _FORCE:
@@ -122,9 +123,9 @@ class GapBounds:
         return replace(held, gaps=gaps), ""
 
     def mended(self, x: FloatArray, tensions: FloatArray) -> Gaps | None:
-        """Return what touches if what pulls most is let go, or else what overlaps is closed.
+        """Return what touches once what pulls most is let go, or else what overlaps closed.
 
-        None where nothing does either.
+        None where nothing pulls or overlaps.
         """
         gaps, forces = self._at(x).gaps, self._forces(x, tensions)
         if forces.min(initial=0.0) < -_ROUNDING:
@@ -135,7 +136,9 @@ class GapBounds:
 
     def told(self, x: FloatArray, tensions: FloatArray) -> Touch:
         """Return what touches, told whether at points or along lines."""
-        points = replace(self, touch=replace(self.touch, line=np.zeros_like(self.touch.line)))
+        points = replace(
+            self, touch=replace(self.touch, line=np.zeros_like(self.touch.line))
+        )
         return replace(self._at(x), line=points._kinds(x, tensions) < 0.0)
 
     def settled(self, x: FloatArray) -> Touch:

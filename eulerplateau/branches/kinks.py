@@ -77,7 +77,9 @@ def kink_between(
     found = [(_located(interval, int(which)), int(which)) for which in broken]
     point, which = min(found, key=lambda pair: pair[0].arclength)
     family, what = cast(BoundedFamily, point.family).beyond(point, which)
-    return Kink(point, _gone_on(point, family, control), what, _error(interval, point, which))
+    return Kink(
+        point, _gone_on(point, family, control), what, _error(interval, point, which)
+    )
 
 
 def _located(interval: Interval, which: int) -> BranchPoint:

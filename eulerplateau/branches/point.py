@@ -272,8 +272,8 @@ def branch_direction(
     """Return the branch's direction at an equilibrium, turned the way of `last`.
 
     `slope` (m,) is the model's parameter_slope, `drift` as of make_direction. The null
-    vector of [H, b]: bordering by `last` would have to find one near `last`, also where a step has landed on a branch
-    that crosses.
+    vector of [H, b]: bordering by `last` would have to find one near `last`, also where a
+    step has landed on a branch that crosses.
     """
     wide = np.column_stack([model.hessian, slope * control.unit])
     null = np.linalg.qr(wide.T, mode="complete")[0][:, -1]

@@ -7,7 +7,7 @@ writes a `Term`; what minimises and follows equilibria knows only the sum of the
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol
 
@@ -108,7 +108,7 @@ class LoopEnergy:
     constraint: Constraint
     weights: FloatArray
     free_motions: Callable[[FloatArray], FloatArray]
-    bounds: Bounds = Unbounded()
+    bounds: Bounds = field(default_factory=Unbounded)
 
     @property
     def is_handed(self) -> bool:

@@ -3,7 +3,7 @@
 At a point of contact a force f makes the curve's third derivative jump by f n / 2, in units
 alpha = L = 1, and its second one has a kink. A spline through vertices cuts that off; and
 where it lies between vertices these share the force, by phi_v(s). Their second differences
-k_v are exact for such forces. So what one force at s makes of the second derivative there is
+k_v are exact for such forces. So what one force at s makes of the second derivative is
 
     gamma''(s) = k(s) - n f / 4 sum_v phi_v(s) |s_v - s|,
 
@@ -32,7 +32,8 @@ def spread(strands: Strands, x: FloatArray, gaps: Gaps, forces: FloatArray) -> f
     shares = pushes / pushes.sum() if pushes.any() else np.full(len(gaps), 1 / len(gaps))
 
     def off(places: FloatArray, from_: FloatArray | float) -> FloatArray:
-        return (places - from_ + 0.5 * whole) % whole - 0.5 * whole
+        apart: FloatArray = (places - from_ + 0.5 * whole) % whole - 0.5 * whole
+        return apart
 
     def middle(places: FloatArray) -> float:
         return float(places[0] + shares @ off(places, places[0]))

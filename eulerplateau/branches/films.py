@@ -25,7 +25,7 @@ from eulerplateau.branches.point import (
 )
 from eulerplateau.branches.progress import Arrays, progress_from
 from eulerplateau.errors import SpecError
-from eulerplateau.loop import LEAST
+from eulerplateau.loop import LEAST, MOST
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers import (
     Equilibrium,
@@ -158,8 +158,9 @@ def explore(
 ) -> Iterator[FilmPoint]:
     """Yield the points of all branches of a film that hang together with a start.
 
-    Folds and bifurcations are among them, located by an eigenvalue's crossing; their
-    `special` says what they are.
+    Folds and bifurcations are among them, located by an eigenvalue's crossing, and where
+    strands of a loop with a diameter touch, part or split; their `special` says what they
+    are.
 
     Parameters
     ----------
@@ -168,7 +169,8 @@ def explore(
     start : an equilibrium of `problem` in the window, from which branches go both ways
         By default the minimum that the rest shape leads to at the lowest load; of another
         parameter at the problem's own value, if that is in the window.
-    parameter : "load", or "link" or "twist_ratio" of a loop that resists twist
+    parameter : "load", or "link" or "twist_ratio" of a loop that resists twist, "diameter"
+        of one that has it
     load : at which another parameter is varied; by default that of `start`
     special_points : int
         New branches are followed from the first so many special points.
@@ -206,9 +208,10 @@ def _control(problem: Problem, parameter: str, window: tuple[float, float]) -> S
     low, high = (float(end) for end in window)
     if parameter != "load":
         check_values(problem, parameter, ())
-    least = LEAST[parameter]
-    if not least < low < high < np.inf:
+    least, most = LEAST[parameter], MOST.get(parameter, np.inf)
+    if not (least < low < high <= most and high < np.inf):
         wanted = "low < high" if np.isinf(least) else f"{least:g} < low < high"
+        wanted += "" if np.isinf(most) else f" <= {most:g}"
         raise SpecError("window", f"found ({low:g}, {high:g}); should be {wanted}")
     if problem.film.dimension != 3:
         raise SpecError("problem", "should not be kept in its plane: branches leave it")

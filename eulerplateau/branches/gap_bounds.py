@@ -63,7 +63,7 @@ class GapBounds:
 
     Its margins: the least of the forces, in parts of the largest tension; the least of the
     other gaps, in diameters; by how much strands spread, or spread less, from where they
-    touch at a point, or along a line, 1/L; and by how much more than flat where that slides.
+    touch at a point, or along a line, 1/L; and by how much more than flat if that slides.
     """
 
     strands: Strands

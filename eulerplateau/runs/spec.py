@@ -154,7 +154,7 @@ class RunSpec(Settings):
         if self.solver.name != "newton":
             problem = f"found {self.solver.name!r}; should be 'newton' with loop.diameter"
             raise SpecError("solver.name", problem)
-        if self.loop.diameter == "rod" and self.sweep.varied == "length":
+        if self.loop.diameter == "rod" and "length" in (self.sweep.varied, self.explored):
             problem = "should be a number along a length: the rod's would change with it"
             raise SpecError("loop.diameter", problem)
         _ = self.diameter

@@ -51,7 +51,9 @@ def lobes(mesh: Disk, load: float, shift: float, in_plane: bool = True) -> Branc
     return film_point(found, problem, CONTROL)
 
 
-def places(start: BranchPoint, most: int, control: StepControl = CONTROL) -> Iterator[Place]:
+def places(
+    start: BranchPoint, most: int, control: StepControl = CONTROL
+) -> Iterator[Place]:
     """The places after a point, up to so many."""
     place: Place | None = Place(start, control.first_step, most)
     while place is not None and (place := next_place(place, control)) is not None:
@@ -238,7 +240,10 @@ EDGES = (40, 80, 160)
 @pytest.mark.slow
 def test_where_contact_begins_and_becomes_a_line_is_of_second_order() -> None:
     exact = thresholds(2, DIAMETER)
-    for what, load in ("touches", exact.sigma_contact), ("splits", exact.sigma_line_contact):
+    for what, load in (
+        ("touches", exact.sigma_contact),
+        ("splits", exact.sigma_line_contact),
+    ):
         assert load is not None
         found = [load_of(loaded(edges, 0.0, 4300.0), what) for edges in EDGES]
         errors = np.abs(np.array(found) / load - 1)

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from eulerplateau.errors import SpecError
-from eulerplateau.mesh import Shape, read_vtp, write_mesh
+from eulerplateau.loop import strands_of
+from eulerplateau.mesh import Shape, read_disk, read_vtp, write_mesh
+from eulerplateau.pictures import draw_branches
 from eulerplateau.pictures.gallery.collection import collect
 from eulerplateau.pictures.gallery.document import page
 from eulerplateau.pictures.wire import read_wire
@@ -26,6 +28,7 @@ from eulerplateau.runs.rows import COLUMNS
 from eulerplateau.runs.series_file import loop_name
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.settings import validate
+from eulerplateau.solvers import Problem
 from tests.helpers import shapes
 from tests.helpers.command import run_here
 
@@ -184,7 +187,6 @@ def test_a_loop_that_is_too_thick_for_its_bends_says_so(mesh: Path, tmp_path: Pa
         ({"loop": {"diameter": 0.2}}, r"loop\.diameter.*0\.1"),
         ({"loop": {"diameter": 0.0}}, r"loop\.diameter"),
         ({"solver": {"name": "cg"}}, r"solver\.name.*newton.*loop\.diameter"),
-        ({"output": {"modes": 1}}, r"output\.modes.*loop\.diameter"),
         (
             {"loop": {}, "sweep": {"parameter": "diameter", "values": [0.01]}},
             r"sweep\.parameter.*needs loop\.diameter",
@@ -202,18 +204,59 @@ def test_what_no_thick_loop_has_is_refused(
         spec(mesh, **sections)
 
 
-def test_branches_catalogues_and_loci_are_refused_before_a_mesh_is_read(
-    tmp_path: Path,
-) -> None:
+def test_catalogues_and_loci_are_refused_before_a_mesh_is_read(tmp_path: Path) -> None:
     thick = spec(tmp_path / "no such mesh.vtp")
     asked = Asked(tmp_path, 0, "load", None, None)
     for attempt in (
-        lambda: run_branches(thick, tmp_path / "b"),
         lambda: run_catalogue(thick, tmp_path / "c"),
         lambda: run_locus(thick, asked, tmp_path / "l"),
     ):
         with pytest.raises(SpecError, match=r"loop\.diameter: should be absent"):
             attempt()
+
+
+def test_branches_have_the_columns_and_say_where_strands_touch(
+    mesh: Path, tmp_path: Path
+) -> None:
+    window = {"load_min": 2880.0, "load_max": 2930.0, "special_points": 0}
+    near = spec(mesh, sweep={"loads": [2600.0, 2890.0]})
+    run_sweep(near, tmp_path / "free")
+    free = read_run(tmp_path / "free")
+    start = {"file": str(free.shape_path(free.rows[1]))}
+    folder = tmp_path / "branches"
+    explored = run_branches(spec(mesh, start=start, branches=window), folder)
+    run = read_run(folder)
+    assert list(run.rows) == list(explored.rows)
+    ((number, told),) = run.special.items()
+    assert (told["kind"], told["contact"]) == ("contact", "touches")
+    at = next(k for k, row in enumerate(run.rows) if row.special == number)
+    before, special, touching, after = run.rows[at - 1 : at + 3]
+    assert [row.contacts for row in (before, special, touching, after)] == [0, 0, 1, 1]
+    assert before.smallest_gap > 0 < after.contact_force
+    assert abs(special.smallest_gap) < 1e-11 > abs(touching.contact_force)
+    assert float(told["sigma_hat"]) == special.sigma_hat == touching.sigma_hat
+    assert special.energy == pytest.approx(touching.energy, rel=1e-12)
+    assert all(row.converged for row in run.rows)
+    assert draw_branches(folder)
+
+
+def test_modes_keep_strands_together_that_touch(
+    mesh: Path, swept: Path, tmp_path: Path
+) -> None:
+    start = {"file": str(read_run(swept).shape_path(read_run(swept).rows[1]))}
+    asked = spec(mesh, start=start, sweep={"loads": LOADS[1:]}, output={"modes": 2})
+    run_sweep(asked, tmp_path / "modes")
+    run = read_run(tmp_path / "modes")
+    stored = read_vtp(run.shape_path(run.rows[0]))
+    loop = stored.lines[0][:-1]
+    strands = strands_of(Problem(read_disk(mesh), diameter=THICK).loop)
+    touching, _ = strands.near(stored.points[loop], 1e-10)
+    assert len(touching) == 1
+    row = strands.between(stored.points[loop], touching).jacobian()[0]
+    for number in range(2):
+        mode = stored.point_fields[f"mode_{number}"][loop]
+        assert np.linalg.norm(mode, axis=1).max() > 0.3
+        assert abs(row @ mode.ravel()) < 1e-9
 
 
 def test_wires_are_drawn_as_thick_as_they_are(mesh: Path, swept: Path) -> None:

@@ -4,7 +4,7 @@
                     (film_start.py)
     film_family.py  a film at one load, or link, after another, near one shape
     exploration.py  the order in which all branches that hang together are followed
-    continuation.py one branch, point by point (point.py); the step's length
+    continuation.py one branch, point by point (point.py); the step's length (control.py)
     between.py      where between two points something vanishes
     special.py      what a fold or a bifurcation is, and the branches that leave it
     kinks.py        where what bounds a loop changes; of strands that touch: gap_bounds.py,

@@ -1,5 +1,6 @@
 from .catalogue import Entry as Entry, Plan as Plan, catalogue_at as catalogue_at
 from .continuation import follow as follow
+from .control import StepControl as StepControl
 from .exploration import (
     DiagramPoint as DiagramPoint,
     Limits as Limits,
@@ -27,7 +28,6 @@ from .locus_between import Resolution as Resolution, Special as Special
 from .locus_point import LocusPoint as LocusPoint
 from .point import (
     BranchPoint as BranchPoint,
-    StepControl as StepControl,
     first_point as first_point,
     point_near as point_near,
 )

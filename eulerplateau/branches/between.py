@@ -9,7 +9,8 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from eulerplateau.branches.point import NOISE, BranchPoint, StepControl, along, correct
+from eulerplateau.branches.control import StepControl
+from eulerplateau.branches.point import NOISE, BranchPoint, along, correct
 
 _PRECISION = 1e-14
 _ROUNDING = 4 * float(np.finfo(np.float64).eps)

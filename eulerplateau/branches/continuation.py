@@ -14,12 +14,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+from eulerplateau.branches.control import Direction, StepControl
 from eulerplateau.branches.family import Family
-from eulerplateau.branches.kinks import Kink, LostError, kink_between
 from eulerplateau.branches.point import (
     BranchPoint,
-    Direction,
-    StepControl,
     correct,
     inner,
     make_direction,
@@ -29,6 +27,30 @@ from eulerplateau.branches.point import (
 _EASY = 4  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
 _LEAST_LEAP = 1e-4  # arclength below which a leap is none, but a branch that turns
+
+
+class LostError(ArithmeticError):
+    """A step leads where it is not known what changes on the way: a shorter one may do."""
+
+
+@dataclass(frozen=True)
+class Kink:
+    """A place where a branch goes on in another family.
+
+    Attributes
+    ----------
+    before, after : the same equilibrium, where the branch comes to it and where it goes on
+    what : in a word, what happens; empty where only how it is said changes
+    error : what rounding in the margin can have moved the parameter by
+    """
+
+    before: BranchPoint
+    after: BranchPoint
+    what: str
+    error: float
+
+
+Kinks = Callable[[BranchPoint, BranchPoint, StepControl], Kink | None]
 
 
 @dataclass(frozen=True)
@@ -56,6 +78,10 @@ class Place:
 def never(before: BranchPoint, after: BranchPoint) -> bool:
     """Return that no step leaps."""
     return False
+
+
+def smooth(before: BranchPoint, after: BranchPoint, control: StepControl) -> None:
+    """Return no kink: that of a family whose loops are not bounded."""
 
 
 def follow(
@@ -86,10 +112,11 @@ def next_place(
     place: Place,
     control: StepControl,
     leaps: Callable[[BranchPoint, BranchPoint], bool] = never,
+    kinks: Kinks = smooth,
 ) -> Place | None:
     """Return the next place on a branch; None if there is none, or there were enough.
 
-    A step ends where the branch has a kink.
+    A step ends at the first of the `kinks` that the branch has.
     """
     if place.left == 0:
         return None
@@ -100,7 +127,7 @@ def next_place(
             after = None
         else:
             try:
-                kink = kink_between(point, after, control)
+                kink = kinks(point, after, control)
             except LostError:
                 after = None
         if after is None:

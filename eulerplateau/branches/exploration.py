@@ -9,7 +9,9 @@ from functools import partial
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.continuation import Place, next_place, outside
-from eulerplateau.branches.point import BranchPoint, StepControl
+from eulerplateau.branches.control import StepControl
+from eulerplateau.branches.kinks import kink_between
+from eulerplateau.branches.point import BranchPoint
 from eulerplateau.branches.progress import KeptPoint, Lead, Progress
 from eulerplateau.branches.special import (
     SpecialPoint,
@@ -114,7 +116,7 @@ def _stepped(
     if progress.before is not None and progress.before is not here:
         before = progress.before.again()
     place = Place(point, progress.step, progress.left)
-    after = next_place(place, control, partial(leaps, control=control))
+    after = next_place(place, control, partial(leaps, control=control), kink_between)
     if after is None:
         return progress.ended()
     visited = partial(DiagramPoint, progress.branch, progress.origin)

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.control import StepControl
 from eulerplateau.branches.exploration import (
     DiagramPoint,
     Limits,
@@ -17,12 +18,7 @@ from eulerplateau.branches.exploration import (
 )
 from eulerplateau.branches.film_family import equilibrium, family_of
 from eulerplateau.branches.film_start import family_near, family_on
-from eulerplateau.branches.point import (
-    BranchPoint,
-    StepControl,
-    first_point,
-    point_near,
-)
+from eulerplateau.branches.point import BranchPoint, first_point, point_near
 from eulerplateau.branches.progress import Arrays, progress_from
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LEAST, MOST

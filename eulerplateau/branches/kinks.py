@@ -7,7 +7,7 @@ with other gaps closed: there are two ways on in that, and bounds are kept to al
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import Protocol, cast
@@ -16,8 +16,10 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.between import Interval
+from eulerplateau.branches.continuation import Kink, LostError
+from eulerplateau.branches.control import StepControl
 from eulerplateau.branches.family import Family
-from eulerplateau.branches.point import BranchPoint, StepControl, correct, point_on
+from eulerplateau.branches.point import BranchPoint, correct, point_on
 
 # Margins down to this are rounding's; and what rounding leaves of one.
 _ROUNDING, _MARGIN = 1e-9, 1e-12
@@ -35,27 +37,6 @@ class BoundedFamily(Family, Protocol):
 
         And what happens there, in a word; nothing where only how it is said changes.
         """
-
-
-class LostError(ArithmeticError):
-    """A step leads where it is not known what changes on the way: a shorter one may do."""
-
-
-@dataclass(frozen=True)
-class Kink:
-    """A place where a branch goes on in another family.
-
-    Attributes
-    ----------
-    before, after : the same equilibrium, where the branch comes to it and where it goes on
-    what : in a word, what happens; empty where only how it is said changes
-    error : what rounding in the margin can have moved the parameter by
-    """
-
-    before: BranchPoint
-    after: BranchPoint
-    what: str
-    error: float
 
 
 def margins(point: BranchPoint) -> FloatArray:

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.control import Direction, Motion, StepControl
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.locus_between import (
     Ahead,
@@ -28,7 +29,7 @@ from eulerplateau.branches.locus_between import (
 )
 from eulerplateau.branches.locus_point import Course, LocusPoint, correct, trial
 from eulerplateau.branches.normal_form import NO_PART, part_along
-from eulerplateau.branches.point import BranchPoint, Direction, Motion, StepControl
+from eulerplateau.branches.point import BranchPoint
 from eulerplateau.branches.special import (
     FOLD,
     SpecialPoint,

@@ -12,9 +12,9 @@ import numpy as np
 from scipy.linalg import LinAlgError
 from scipy.optimize import brentq
 
+from eulerplateau.branches.control import Motion
 from eulerplateau.branches.locus_point import LocusPoint, correct
 from eulerplateau.branches.normal_form import NO_PART, part_along
-from eulerplateau.branches.point import Motion
 
 _PRECISION = 1e-11  # arclength to which special points are located
 # Parts of the way between two points by which a singular one is passed.

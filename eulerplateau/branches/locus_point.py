@@ -22,9 +22,9 @@ import numpy as np
 from scipy.linalg import LinAlgError, polar
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.control import Motion, StepControl
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.normal_form import Neighbourhood, bordered
-from eulerplateau.branches.point import Motion, StepControl
 from eulerplateau.interruption import heed
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import TangentModel, tangent_model

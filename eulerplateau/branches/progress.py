@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.control import Direction
 from eulerplateau.branches.family import Family
-from eulerplateau.branches.point import BranchPoint, Direction
+from eulerplateau.branches.point import BranchPoint
 from eulerplateau.solvers import tangent_model
 
 Arrays = Mapping[str, NDArray[Any]]

@@ -18,13 +18,11 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.between import Interval, parameter_rate
-from eulerplateau.branches.continuation import advance, released
-from eulerplateau.branches.kinks import Kink
+from eulerplateau.branches.continuation import Kink, advance, released
+from eulerplateau.branches.control import Direction, StepControl
 from eulerplateau.branches.normal_form import NO_PART, part_along
 from eulerplateau.branches.point import (
     BranchPoint,
-    Direction,
-    StepControl,
     correct,
     make_direction,
     parameter_drift,

@@ -19,8 +19,8 @@ from eulerplateau.branches import (
     point_near,
 )
 from eulerplateau.branches.conformal import opening_load, thick_eight
-from eulerplateau.branches.continuation import Place, advance, next_place
-from eulerplateau.branches.kinks import Kink, margins
+from eulerplateau.branches.continuation import Kink, Place, advance, next_place
+from eulerplateau.branches.kinks import kink_between, margins
 from eulerplateau.exact.planar import planar_film, thresholds
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import Equilibrium, Problem, solve
@@ -56,7 +56,10 @@ def places(
 ) -> Iterator[Place]:
     """The places after a point, up to so many."""
     place: Place | None = Place(start, control.first_step, most)
-    while place is not None and (place := next_place(place, control)) is not None:
+    while (
+        place is not None
+        and (place := next_place(place, control, kinks=kink_between)) is not None
+    ):
         yield place
 
 

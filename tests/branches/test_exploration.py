@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.control import StepControl
 from eulerplateau.branches.exploration import (
     DiagramPoint,
     Limits,
     explore_from,
     explore_on,
 )
-from eulerplateau.branches.point import BranchPoint, StepControl
+from eulerplateau.branches.point import BranchPoint
 from eulerplateau.branches.progress import KeptPoint, Lead, Progress
 from eulerplateau.branches.special import SpecialPoint
 from eulerplateau.loop.motions import rigid_motions

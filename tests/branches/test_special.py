@@ -11,7 +11,8 @@ import pytest
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.between import Interval
 from eulerplateau.branches.continuation import advance, follow
-from eulerplateau.branches.point import BranchPoint, StepControl, along
+from eulerplateau.branches.control import StepControl
+from eulerplateau.branches.point import BranchPoint, along
 from eulerplateau.branches.special import (
     BIFURCATION,
     FOLD,

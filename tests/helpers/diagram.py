@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from eulerplateau.branches import FilmFamily, film_point
+from eulerplateau.branches.control import StepControl
 from eulerplateau.branches.exploration import DiagramPoint, Limits, explore_from
-from eulerplateau.branches.point import BranchPoint, StepControl, first_point
+from eulerplateau.branches.point import BranchPoint, first_point
 from eulerplateau.branches.special import SpecialPoint
 from eulerplateau.loop.lengths import close_with_lengths
 from eulerplateau.mesh import read_disk

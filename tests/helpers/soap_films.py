@@ -10,8 +10,9 @@ from scipy.sparse import csr_array
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import FilmFamily, film_point
 from eulerplateau.branches.continuation import follow, released
+from eulerplateau.branches.control import Direction, StepControl
 from eulerplateau.branches.film_family import family_near
-from eulerplateau.branches.point import BranchPoint, Direction, StepControl, correct
+from eulerplateau.branches.point import BranchPoint, correct
 from eulerplateau.branches.special import SpecialPoint, special_points
 from eulerplateau.exact.conformal.equilibrium import ConformalFilm
 from eulerplateau.film.tiling import Tiling

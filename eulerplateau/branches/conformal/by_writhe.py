@@ -22,7 +22,8 @@ from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import resolved
 from eulerplateau.branches.conformal.terms import SmoothTwist
 from eulerplateau.branches.continuation import Place, next_place
-from eulerplateau.branches.point import BranchPoint, StepControl, first_point, point_near
+from eulerplateau.branches.control import StepControl
+from eulerplateau.branches.point import BranchPoint, first_point, point_near
 from eulerplateau.exact.conformal import (
     BUCKLING,
     TWISTED,

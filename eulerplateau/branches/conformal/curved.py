@@ -10,13 +10,8 @@ from eulerplateau.branches.conformal.curved_family import CurvedFamily
 from eulerplateau.branches.conformal.family import smooth_family
 from eulerplateau.branches.conformal.resolution import resolved
 from eulerplateau.branches.continuation import Place, next_place
-from eulerplateau.branches.point import (
-    BranchPoint,
-    StepControl,
-    ahead,
-    first_point,
-    point_near,
-)
+from eulerplateau.branches.control import StepControl
+from eulerplateau.branches.point import BranchPoint, ahead, first_point, point_near
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
 
 

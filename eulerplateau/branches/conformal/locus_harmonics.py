@@ -9,9 +9,9 @@ import numpy as np
 
 from eulerplateau.branches.conformal.family import SmoothFamily
 from eulerplateau.branches.conformal.resolution import TAIL
+from eulerplateau.branches.control import Motion
 from eulerplateau.branches.locus_between import Resolution
 from eulerplateau.branches.locus_point import LocusPoint, correct
-from eulerplateau.branches.point import Motion
 from eulerplateau.exact.conformal import BETTER, Basis, finer_bases
 
 

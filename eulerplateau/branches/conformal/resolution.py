@@ -6,13 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from eulerplateau.branches.conformal.family import smooth_family
-from eulerplateau.branches.point import (
-    BranchPoint,
-    Direction,
-    StepControl,
-    correct,
-    point_near,
-)
+from eulerplateau.branches.control import Direction, StepControl
+from eulerplateau.branches.point import BranchPoint, correct, point_near
 from eulerplateau.exact.conformal import BETTER, Basis, finer_bases
 
 # Films are refined until the last tenth of their harmonics is this small.

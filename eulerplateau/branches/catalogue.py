@@ -23,8 +23,7 @@ from eulerplateau.branches.deflation import (
     search,
     towards_index,
 )
-from eulerplateau.branches.film_family import equilibrium, likeness_of
-from eulerplateau.branches.film_start import family_near
+from eulerplateau.branches.film_family import equilibrium, family_near, likeness_of
 from eulerplateau.branches.likeness import Likeness
 from eulerplateau.branches.point import BranchPoint, point_near
 from eulerplateau.branches.symmetry import OPERATIONS, loop_symmetries

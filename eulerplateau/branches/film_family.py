@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,41 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import LoopEnergy
+from eulerplateau.loop import Loop, LoopEnergy
+from eulerplateau.mesh import Shape
 from eulerplateau.solvers import Equilibrium, Problem, Status
+
+if TYPE_CHECKING:
+    from eulerplateau.branches.contact import Contact
+    from eulerplateau.loop import Contacts
+
+
+class NoContact:
+    """Nothing of a loop that has no diameter: what contact.py has for one that has it."""
+
+    def held(self, energy: LoopEnergy, loop: Loop) -> LoopEnergy:
+        """Return the energy as it is."""
+        return energy
+
+    def near(self, x: FloatArray) -> NoContact:
+        """Return itself."""
+        return self
+
+    def contacts(
+        self, point: BranchPoint, loop: Loop, film: FilmOfLoop, energy: LoopEnergy
+    ) -> None:
+        """Return None."""
+
+    def kept(self) -> Mapping[str, NDArray[Any]]:
+        """Return nothing."""
+        return {}
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> NoContact:
+        """Return itself."""
+        return self
+
+
+NO_CONTACT = NoContact()
 
 
 @dataclass(frozen=True)
@@ -25,12 +58,14 @@ class FilmFamily:
     ----------
     parameter : "load", or one of the loop's own, as "link"
     load : float, at which that is varied; of no account where it is the load
+    contact : which gaps are closed, of a loop that has a diameter
     """
 
     problem: Problem
     film: FilmOfLoop
     parameter: str = "load"
     load: float = 0.0
+    contact: NoContact | Contact = NO_CONTACT
 
     def at(self, value: float) -> tuple[Problem, float]:
         """Return the problem and its load at a value of the parameter."""
@@ -39,7 +74,7 @@ class FilmFamily:
     def energy(self, value: float) -> LoopEnergy:
         """Return the energy at a value of the parameter."""
         problem, load = self.at(value)
-        return self.film.energy(problem.loop, load)
+        return self.contact.held(self.film.energy(problem.loop, load), problem.loop)
 
     def with_value(self, parameter: str, value: float) -> FilmFamily:
         """Return the family at another value of a parameter that it does not vary."""
@@ -51,8 +86,8 @@ class FilmFamily:
         return x
 
     def near(self, x: FloatArray) -> FilmFamily:
-        """Return the film made anew at a loop (n_b, 3)."""
-        return self._with(self.film.renewed(x))
+        """Return the film made anew at a loop (n_b, 3), and what touches there."""
+        return replace(self, contact=self.contact.near(x))._with(self.film.renewed(x))
 
     def released(self, x: FloatArray) -> FilmFamily:
         """Return the film as a minimal surface, where it is curved."""
@@ -60,21 +95,37 @@ class FilmFamily:
 
     def kept(self, x: FloatArray) -> Mapping[str, NDArray[Any]]:
         """Return what makes the film again, good near a loop (n_b, 3)."""
-        return self.film.kept(x)
+        return {**self.film.kept(x), **self.contact.kept()}
 
     def restored(self, kept: Mapping[str, NDArray[Any]]) -> FilmFamily:
         """Return the film that this was kept of."""
-        return self._with(self.film.restored(kept))
+        return self._with(self.film.restored(kept), self.contact.restored(kept))
+
+    def beyond(self, point: BranchPoint, which: int) -> tuple[FilmFamily, str]:
+        """Return the family beyond a point where one of its margins vanishes."""
+        problem, _ = self.at(point.value)
+        assert not isinstance(self.contact, NoContact)
+        contact, what = self.contact.beyond(point, problem.loop, which)
+        return replace(self, contact=contact), what
 
     def equilibrium(self, point: BranchPoint) -> Equilibrium:
         """Return the equilibrium at a point of a branch of it."""
-        (problem, load), shape = self.at(point.value), self.film.shape(point.x)
-        found = problem.equilibrium(shape, point.model.tensions, load, Status.CONVERGED)
-        classified = replace(problem.classified(found), iterations=point.corrections)
+        (problem, load), x = self.at(point.value), point.x
+        energy = self.film.energy(problem.loop, load)
+        contacts = self.contact.contacts(point, problem.loop, self.film, energy)
+        shape, tensions = self.film.shape(x), point.model.tensions[: len(x)]
+        pushes = None if contacts is None else contacts.pushes
+        found = problem.equilibrium(shape, tensions, load, Status.CONVERGED, pushes)
+        classified = problem.classified(replace(found, contacts=contacts))
+        classified = replace(classified, iterations=point.corrections)
         return replace(classified, stability=point.stability)
 
-    def _with(self, film: FilmOfLoop) -> FilmFamily:
-        return self if film is self.film else replace(self, film=film)
+    def _with(
+        self, film: FilmOfLoop, contact: NoContact | Contact | None = None
+    ) -> FilmFamily:
+        closed = self.contact if contact is None else contact
+        same = film is self.film and closed is self.contact
+        return self if same else replace(self, film=film, contact=closed)
 
 
 def family_of(point: BranchPoint) -> FilmFamily:
@@ -85,6 +136,46 @@ def family_of(point: BranchPoint) -> FilmFamily:
 def equilibrium(point: BranchPoint) -> Equilibrium:
     """Return the equilibrium of a film at a point of one of its branches."""
     return family_of(point).equilibrium(point)
+
+
+def family_on(
+    problem: Problem, film: FilmOfLoop, parameter: str, load: float
+) -> FilmFamily:
+    """Return a family on any film of a problem: what a kept one is restored from."""
+    family = FilmFamily(problem, film, parameter, load)
+    if problem.loop.diameter is None:
+        return family
+    from eulerplateau.branches.contact import Contact
+    from eulerplateau.loop import strands_of
+
+    return replace(family, contact=Contact(strands_of(problem.loop)))
+
+
+def family_near(
+    problem: Problem,
+    shape: Shape,
+    parameter: str = "load",
+    load: float = 0.0,
+    contacts: Contacts | None = None,
+) -> tuple[FilmFamily, FloatArray]:
+    """Return the family good near a shape, and the shape's loop in its coordinates.
+
+    Of a loop with a diameter it is the equilibrium next to that with its contacts, if those
+    are not known; `load` is the shape's.
+    """
+    film = problem.film.of_loop(problem.film.prepared(shape))
+    family, x = FilmFamily(problem, film, parameter, load), film.project(shape.x_loop)
+    if problem.loop.diameter is None:
+        return family, x
+    # Loaded for such loops only.
+    from eulerplateau.branches.contact import contact_near
+
+    places = None if contacts is None else contacts.places
+    value = problem.value(parameter, load)
+    contact, x = contact_near(
+        problem.loop, x, value, places, lambda touching: replace(family, contact=touching)
+    )
+    return replace(family, contact=contact), x
 
 
 def likeness_of(problem: Problem, within: float) -> Likeness:

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eulerplateau.branches.control import Direction, StepControl
-from eulerplateau.branches.film_family import equilibrium, family_of
-from eulerplateau.branches.film_start import family_near
+from eulerplateau.branches.film_family import equilibrium, family_near, family_of
 from eulerplateau.branches.locus import follow_locus, locus_start, special_at
 from eulerplateau.branches.locus_point import LocusPoint
 from eulerplateau.branches.point import BranchPoint

@@ -16,8 +16,12 @@ from eulerplateau.branches.exploration import (
     explore_from,
     explore_on,
 )
-from eulerplateau.branches.film_family import equilibrium, family_of
-from eulerplateau.branches.film_start import family_near, family_on
+from eulerplateau.branches.film_family import (
+    equilibrium,
+    family_near,
+    family_of,
+    family_on,
+)
 from eulerplateau.branches.point import BranchPoint, first_point, point_near
 from eulerplateau.branches.progress import Arrays, progress_from
 from eulerplateau.errors import SpecError

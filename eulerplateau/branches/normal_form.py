@@ -22,7 +22,6 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.point import pull
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import Directional, TangentModel, directional
 
@@ -159,10 +158,10 @@ def part_along(
     parameter : that of the branch, or another one of the energy's
     unit : float, a change of it that counts, as a StepControl's
     """
-    pulled = pull(parameter, energy, model)
-    slope = model.slope(pulled)
+    pull = energy.pull(parameter, model.x, model.tensions)
+    slope = model.slope(pull)
     held = energy.constraint.force(model.x, model.tensions)
     forces = [force / unit for force in (*energy.forces(model.x), held)]
-    sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pulled, *forces)]
+    sizes = [float(np.linalg.norm(f.ravel() / model.scale)) for f in (pull, *forces)]
     size = max(float(np.linalg.norm(slope)), _IDLE * max(sizes))
     return abs(float(slope @ mode)) / size

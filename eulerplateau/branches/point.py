@@ -11,7 +11,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.control import Direction, StepControl
 from eulerplateau.branches.family import Family
 from eulerplateau.interruption import heed
-from eulerplateau.loop import LoopEnergy, product
+from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import (
     RESIDUAL_TOLERANCE,
     Stability,
@@ -236,17 +236,9 @@ def make_direction(
     return Direction(moved, rate / size)
 
 
-def pull(parameter: str, energy: LoopEnergy, model: TangentModel) -> FloatArray:
-    """Return the derivative of the forces (n, d) by a parameter, along the loop's drift."""
-    drift = energy.bounds.drift(parameter, model.x)
-    if drift is None:
-        return energy.rate(parameter, model.x)
-    return product(energy.lagrangian_hessian(model.x, model.tensions), drift)
-
-
 def parameter_slope(family: Family, energy: LoopEnergy, model: TangentModel) -> FloatArray:
     """Return b = dg/dparameter (m,), g the model's gradient."""
-    return model.slope(pull(family.parameter, energy, model))
+    return model.slope(energy.pull(family.parameter, model.x, model.tensions))
 
 
 def parameter_drift(

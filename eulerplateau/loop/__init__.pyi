@@ -3,10 +3,7 @@ from .bending import Bending as Bending, inextensible as inextensible
 from .contacts import Contacts as Contacts
 from .curved_rod import CurvedRod as CurvedRod
 from .edges import Edges as Edges, edges_of as edges_of
-from .energy import (
-    Constraint as Constraint,
-    LoopEnergy as LoopEnergy,
-)
+from .energy import Constraint as Constraint, LoopEnergy as LoopEnergy
 from .equal_edges import EqualEdges as EqualEdges
 from .frames import Frame as Frame, directors as directors
 from .free_bending import FreeBending as FreeBending
@@ -38,13 +35,7 @@ from .rod import Rod as Rod
 from .spreads import spread as spread
 from .strands import Strands as Strands, strands_of as strands_of
 from .stretches import ALONG as ALONG, evenly as evenly
-from .term import (
-    LEAST as LEAST,
-    MOST as MOST,
-    OwnTerm as OwnTerm,
-    Term as Term,
-    product as product,
-)
+from .term import LEAST as LEAST, MOST as MOST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,
     LengthMetric as LengthMetric,

@@ -175,6 +175,13 @@ class LoopEnergy:
             raise ValueError(f"no term of the energy depends on {parameter!r}")
         return sum(known[1:], start=known[0])
 
+    def pull(self, parameter: str, x: FloatArray, tensions: FloatArray) -> FloatArray:
+        """Return the same (n, d) of a loop in balance, which drifts with its bounds."""
+        drift = self.bounds.drift(parameter, x)
+        if drift is None:
+            return self.rate(parameter, x)
+        return product(self.lagrangian_hessian(x, tensions), drift)
+
     def holds(self, x: FloatArray) -> bool:
         """Return whether all terms, and bounds, are still good at x."""
         return self.bounds.holds(x) and all(term.holds(x) for term in self.terms.values())

@@ -1,4 +1,4 @@
-from .contact.search import equilibrium_in_contact as equilibrium_in_contact
+from .contact.record import contacts_at as contacts_at
 from .descent import Descent as Descent
 from .equilibrium import (
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,

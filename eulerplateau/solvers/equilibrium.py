@@ -177,6 +177,11 @@ class Equilibrium:
         """The smallest eigenvalue; None where the solver does not compute it."""
         return None if self.stability is None else self.stability.lowest
 
+    @property
+    def overlap(self) -> float:
+        """By how much strands of a loop with a diameter overlap; 0 of any other."""
+        return 0.0 if self.contacts is None else max(0.0, -self.contacts.smallest_gap)
+
     def __repr__(self) -> str:
         """Return one line: load, energy, status, Morse index."""
         index = "" if self.n_unstable is None else f", {self.n_unstable} unstable"

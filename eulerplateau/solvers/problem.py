@@ -27,8 +27,9 @@ from eulerplateau.solvers.equilibrium import (
     with_stability,
 )
 
-# Relative error of lengths up to which what a solver stopped at is a loop at all.
-_CLOSED = 1e-3
+# Relative error of lengths up to which what a solver stopped at is a loop at all; by which
+# part of the diameter strands may overlap between the vertices they are held at.
+_CLOSED, _OVERLAP = 1e-3, 1e-2
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -207,7 +208,12 @@ class Problem:
         return self.loop.pinched(shape.x_loop) or self.film.pinched(shape, self.loop)
 
     def equilibrium(
-        self, shape: Shape, tensions: FloatArray, load: float, status: Status
+        self,
+        shape: Shape,
+        tensions: FloatArray,
+        load: float,
+        status: Status,
+        pushes: FloatArray | None = None,
     ) -> Equilibrium:
         """Record a shape with all its numbers computed by the kernels on the full mesh."""
         film, pull = self.film.energy_gradient(shape, load)
@@ -224,7 +230,7 @@ class Problem:
             film_energy=film,
             bending_energy=bending,
             loop_energies=loop,
-            residual=self.residual(shape, tensions, load),
+            residual=self.residual(shape, tensions, load, pushes),
             film_residual=float(inside / strongest) if strongest > 0.0 else 0.0,
             length_error=self.length_error(shape),
             iterations=0,
@@ -287,6 +293,8 @@ class Problem:
         if self.film.folded(found.shape):
             return replace(found, status=Status.FOLDED)
         thick = self.loop.diameter
+        if thick is not None and found.overlap > _OVERLAP * thick:
+            return replace(found, status=Status.UNRESOLVED)
         if thick is not None and self.film.touches(found.shape, thick):
             return replace(found, status=Status.FILM_TOUCHED)
         return found

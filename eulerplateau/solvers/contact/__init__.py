@@ -3,6 +3,7 @@
     search.py   from a start to a minimum, of every film, and what is said of its contacts
     descent.py  downhill on loops whose strands touch here and there, and overlap nowhere
     keeping.py  which gaps are closed, at points or along each other
+    record.py    what is said of contacts
     separation.py  how strands that overlap are parted before
 
 Nothing of it is loaded for loops without a diameter.

@@ -6,31 +6,21 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import (
-    NO_GAPS,
-    Contacts,
-    Gaps,
-    Strands,
-    close_with_lengths,
-    strands_of,
-)
+from eulerplateau.loop import Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.contact.descent import ContactDescent
-from eulerplateau.solvers.contact.keeping import Keeping, Touching
+from eulerplateau.solvers.contact.keeping import Touching
+from eulerplateau.solvers.contact.record import contacts_of
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.renewal import Reached, elsewhere, near_shapes
-from eulerplateau.solvers.second_variation import TangentModel, stability
+from eulerplateau.solvers.second_variation import stability
 from eulerplateau.threads import one_thread
-
-# By which part of the diameter strands may overlap between the vertices they are held at.
-_OVERLAP = 1e-2
 
 
 def search(
@@ -136,54 +126,11 @@ def _record(
     status: Status,
 ) -> Equilibrium:
     tensions = state.model.tensions
-    contacts = _contacts(strands, film, state)
-    if contacts.doubtful.any():
-        energy = film.energy(problem.loop, load)
-        fewer = Keeping(energy, strands).without(state, contacts.doubtful)
-        index = stability(fewer.model).n_unstable
-        contacts = replace(contacts, unstable_let_go=index)
+    contacts = contacts_of(strands, film, film.energy(problem.loop, load), state)
     on_edges = tensions[: len(state.model.x)]
-    found = problem.equilibrium(shape, on_edges, load, status)
-    residual = problem.residual(shape, on_edges, load, contacts.pushes)
-    found = replace(found, iterations=spent, contacts=contacts, residual=residual)
+    found = problem.equilibrium(shape, on_edges, load, status, contacts.pushes)
+    found = replace(found, iterations=spent, contacts=contacts)
     found = with_stability(found, stability(state.model))
     if contacts.forces.min(initial=0.0) < -state.uncertain:
         return replace(found, status=Status.STALLED)
-    # What vertices do not see of strands along each other is an edge's length's fault.
-    coarse = found.converged and contacts.smallest_gap < -_OVERLAP * strands.diameter
-    return replace(found, status=Status.UNRESOLVED) if coarse else found
-
-
-def equilibrium_in_contact(
-    problem: Problem,
-    strands: Strands,
-    load: float,
-    film: FilmOfLoop,
-    model: TangentModel,
-    gaps: Gaps,
-) -> Equilibrium:
-    """Return the equilibrium, stable or not, at which a model is made, some gaps closed."""
-    state = Touching(model, gaps, NO_GAPS, radius=0.0, iteration=0)
-    shape = film.shape(model.x)
-    return _record(problem, strands, load, film, state, shape, 0, Status.CONVERGED)
-
-
-def _contacts(strands: Strands, film: FilmOfLoop, state: Touching) -> Contacts:
-    """Return the contacts of a loop that a descent has come to."""
-    x, gaps = state.model.x, state.gaps
-    curve, between = strands.curve(x), strands.between(x, gaps)
-    places = np.stack([curve(gaps.s), curve(gaps.t)])
-    _, widths = strands.at(x, gaps)
-    pushes = -state.forces @ between.jacobian()
-    return Contacts(
-        s=gaps.s,
-        t=gaps.t,
-        points=np.stack([film.lift(each) for each in places]),
-        forces=state.forces,
-        gaps=widths,
-        angles=between.angles(),
-        at_a_point=gaps.slides,
-        uncertain=state.uncertain,
-        pushes=film.lift(pushes.reshape(x.shape)),
-        smallest_gap=strands.smallest_gap(x, 0.5 * strands.diameter),
-    )
+    return found

@@ -1,0 +1,119 @@
+"""What a family of films on a loop with a diameter knows of the gaps that are closed.
+
+Loaded only for loops that have a diameter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from copy import copy
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.family import Family
+from eulerplateau.branches.gap_bounds import NO_TOUCH, GapBounds, Touch
+from eulerplateau.branches.point import BranchPoint, point_near
+from eulerplateau.film import FilmOfLoop
+from eulerplateau.loop import (
+    Contacts,
+    Gaps,
+    Loop,
+    LoopEnergy,
+    Strands,
+    strands_of,
+    with_gaps_held,
+)
+from eulerplateau.solvers import contacts_at
+
+# Gaps in units of L that are closed, or nearly; and times that what touches is changed
+# until nothing pulls and nothing overlaps.
+_CLOSED = 1e-6
+_CHANGES = 40
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Gaps of a loop that are closed: where its strands touch."""
+
+    strands: Strands
+    touch: Touch = NO_TOUCH
+
+    def bounds(self, loop: Loop) -> GapBounds:
+        """Return what keeps the strands apart of a loop, whatever its diameter."""
+        strands = self.strands
+        if loop.diameter != strands.diameter:
+            # Copied with what is known of its curves.
+            strands, other = copy(self.strands), strands_of(loop)
+            object.__setattr__(strands, "diameter", other.diameter)
+            object.__setattr__(strands, "apart", other.apart)
+        return GapBounds(strands, self.touch)
+
+    def held(self, energy: LoopEnergy, loop: Loop) -> LoopEnergy:
+        """Return an energy of the loop, with the gaps kept closed."""
+        bounds = self.bounds(loop)
+        held = with_gaps_held(energy, bounds.strands, self.touch.gaps)
+        return replace(held, bounds=bounds)
+
+    def near(self, x: FloatArray) -> Contact:
+        """Return the gaps of the kind, and at the places, they should be at x (n, d)."""
+        return replace(self, touch=GapBounds(self.strands, self.touch).settled(x))
+
+    def beyond(self, point: BranchPoint, loop: Loop, which: int) -> tuple[Contact, str]:
+        """Return what is closed beyond a point where one of its margins vanishes."""
+        bounds = self.bounds(loop)
+        touch, what = bounds.beyond(point.x, point.model.tensions, which)
+        return replace(self, touch=touch), what
+
+    def contacts(
+        self, point: BranchPoint, loop: Loop, film: FilmOfLoop, energy: LoopEnergy
+    ) -> Contacts:
+        """Return the contacts at a point; `energy` is that without them."""
+        strands = self.bounds(loop).strands
+        gaps, _ = strands.at(point.x, self.touch.gaps)
+        return contacts_at(strands, film, energy, point.model, gaps)
+
+    def kept(self) -> Mapping[str, NDArray[Any]]:
+        """Return which gaps are closed, for `restored`."""
+        own = {**vars(self.touch.gaps), "line": self.touch.line}
+        return {f"touch.{name}": array for name, array in own.items()}
+
+    def restored(self, kept: Mapping[str, NDArray[Any]]) -> Contact:
+        """Return the contact that this was kept of."""
+        s, t, slides, line = (
+            kept[f"touch.{name}"] for name in ("s", "t", "slides", "line")
+        )
+        return replace(self, touch=Touch(Gaps(s, t, slides), line))
+
+
+def contact_near(
+    loop: Loop,
+    x: FloatArray,
+    value: float,
+    gaps: Gaps | None,
+    family: Callable[[Contact], Family],
+) -> tuple[Contact, FloatArray]:
+    """Return what is closed at the equilibrium next to x (n, d), and its loop.
+
+    The gaps that are given, or all but closed at x, less what pulls, and what overlaps
+    besides; x itself where Newton's method comes to nothing. `family` makes the family of
+    a contact, of whose parameter this is the value.
+    """
+    contact = Contact(strands_of(loop))
+    near: Gaps | None = gaps
+    if near is None:
+        near, _ = contact.strands.near(x, _CLOSED)
+    for _ in range(_CHANGES):
+        assert near is not None
+        contact = replace(contact, touch=Touch(near, np.zeros(len(near), dtype=bool)))
+        found = point_near(family(contact), x, value, -np.inf)
+        if found is None:
+            break
+        x, tensions, bounds = found.x, found.model.tensions, contact.bounds(loop)
+        near = bounds.mended(x, tensions)
+        if near is None:
+            return replace(contact, touch=bounds.told(x, tensions)).near(x), x
+    return contact, x

@@ -114,8 +114,10 @@ class FilmFamily:
         energy = self.film.energy(problem.loop, load)
         contacts = self.contact.contacts(point, problem.loop, self.film, energy)
         shape, tensions = self.film.shape(x), point.model.tensions[: len(x)]
-        found = problem.equilibrium(shape, tensions, load, Status.CONVERGED, contacts)
-        classified = replace(problem.classified(found), iterations=point.corrections)
+        pushes = None if contacts is None else contacts.pushes
+        found = problem.equilibrium(shape, tensions, load, Status.CONVERGED, pushes)
+        classified = problem.classified(replace(found, contacts=contacts))
+        classified = replace(classified, iterations=point.corrections)
         return replace(classified, stability=point.stability)
 
     def _with(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,13 +28,9 @@ from eulerplateau.solvers.equilibrium import (
     with_stability,
 )
 
-if TYPE_CHECKING:
-    from eulerplateau.loop import Contacts
-
-# Relative error of lengths up to which what a solver stopped at is a loop at all.
-_CLOSED = 1e-3
-# By which part of the diameter strands may overlap between the vertices they are held at.
-_OVERLAP = 1e-2
+# Relative error of lengths up to which what a solver stopped at is a loop at all; by which
+# part of the diameter strands may overlap between the vertices they are held at.
+_CLOSED, _OVERLAP = 1e-3, 1e-2
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -219,10 +214,9 @@ class Problem:
         tensions: FloatArray,
         load: float,
         status: Status,
-        contacts: Contacts | None = None,
+        pushes: FloatArray | None = None,
     ) -> Equilibrium:
         """Record a shape with all its numbers computed by the kernels on the full mesh."""
-        pushes = None if contacts is None else contacts.pushes
         film, pull = self.film.energy_gradient(shape, load)
         bending = self.bending_energy(shape)[0]
         terms = self.loop.terms.items()
@@ -243,7 +237,6 @@ class Problem:
             iterations=0,
             seconds=0.0,
             status=status,
-            contacts=contacts,
         )
 
     def record(

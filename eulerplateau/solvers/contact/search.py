@@ -128,8 +128,9 @@ def _record(
     tensions = state.model.tensions
     contacts = contacts_of(strands, film, film.energy(problem.loop, load), state)
     on_edges = tensions[: len(state.model.x)]
-    found = problem.equilibrium(shape, on_edges, load, status, contacts)
-    found = with_stability(replace(found, iterations=spent), stability(state.model))
+    found = problem.equilibrium(shape, on_edges, load, status, contacts.pushes)
+    found = replace(found, iterations=spent, contacts=contacts)
+    found = with_stability(found, stability(state.model))
     if contacts.forces.min(initial=0.0) < -state.uncertain:
         return replace(found, status=Status.STALLED)
     return found

@@ -31,8 +31,14 @@ _CHANGES = {
     "jumps": "two lobes jump to a pinched eight, if the line's ends turn freely",
     "touches": "if they do not: the two lobes' sides touch in a point",
     "touches_along_a_line": "and along a line",
+    "opens": "a pinched eight opens again, its strands a diameter apart, if the line's ends "
+    "turn freely",
 }
-_OPENS = "not sought here: docs/thick-eight.md has loads by thickness"
+_NOT = {
+    "touches": "not where the line's curvature stays below 2/d",
+    "touches_along_a_line": "not where the line's curvature stays below 2/d",
+    "opens": "not known but of loops of 10 to 2000 diameters",
+}
 
 
 @click.command()
@@ -96,7 +102,7 @@ def _numbers(bench: Any, diameter: float | None, poisson: float | None) -> dict[
 
     relative = None if diameter is None else diameter / bench.length
     loads = asdict(changes(0.0 if diameter is None else bench.width(diameter)))
-    loads = {name: load if isfinite(load) else None for name, load in loads.items()}
+    loads = {name: load if load and isfinite(load) else None for name, load in loads.items()}
     return {
         "sigma_hat": bench.load,
         "kL3_alpha": bench.load / SPRING_LOAD.tension_per_load,
@@ -106,10 +112,7 @@ def _numbers(bench: Any, diameter: float | None, poisson: float | None) -> dict[
         "twist_ratio": None if poisson is None else isotropic_twist_ratio(poisson),
         "film": {twist.value: state(bench.load, twist, relative) for twist in Twist},
         "loads": loads,
-        "lengths": {
-            **{name: load and bench.length_at(load) for name, load in loads.items()},
-            "opens": None,
-        },
+        "lengths": {name: load and bench.length_at(load) for name, load in loads.items()},
     }
 
 
@@ -142,10 +145,9 @@ def _said(numbers: Mapping[str, Any], length: Quantity) -> Iterator[str]:
     for name, what in _CHANGES.items():
         load = numbers["loads"][name]
         if load is None:
-            yield f"  {'':>10}  {what}: not where the line's curvature stays below 2/d"
+            yield f"  {'':>10}  {what}: {_NOT[name]}"
             continue
         yield f"  {long(numbers['lengths'][name]):>10}  {what} (sigma_hat {load:.2f})"
-    yield f"  {'':>10}  a pinched eight opens again: {_OPENS}"
 
 
 def _plain(value: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from eulerplateau.exact.conformal import lobes_twist
+from eulerplateau.exact.conformal import lobes_twist, opening_load_by_width
 from eulerplateau.exact.planar import TooThickError, planar_film
 from eulerplateau.exact.planar.buckled import sigma_buckling
 from eulerplateau.exact.planar.limits import contacts
@@ -27,20 +27,29 @@ class Changes:
     buckles : the disk becomes two lobes in their plane
     jumps : two lobes become a pinched eight, if the line's twist escapes
     touches, touches_along_a_line : the two lobes' sides, if it does not
+    opens : an eight whose strands touch opens again, unloaded, if the line's twist escapes;
+        None where that is not known: of a line without a thickness, or one that is thinner
+        or thicker than those whose films are known
     """
 
     buckles: float
     jumps: float
     touches: float
     touches_along_a_line: float
+    opens: float | None
 
 
 def changes(width: float = 0.0) -> Changes:
-    """Return the loads at which loops of a line change, to ten digits.
+    """Return the loads at which loops of a line change, to ten digits; `opens` to six.
 
     `width` is the line's diameter in units of (alpha / sigma)^(1/3), of any length.
     """
-    return Changes(sigma_buckling(2), lobes_twist(), *contacts(2, width))
+    return Changes(
+        sigma_buckling(2),
+        lobes_twist(),
+        *contacts(2, width),
+        opening_load_by_width(width),
+    )
 
 
 EIGHT, TOO_THICK = "eight", "too_thick"

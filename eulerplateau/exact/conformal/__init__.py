@@ -9,7 +9,8 @@
     branch.py       branches: followed, located, switched; second_variation.py: stability
     geometry.py     the film as a surface, its edge and its waist
     eight.py        the flat eight, eight_modes.py: its stability; held_waist.py: films
-                    whose waist is held; strands.py: where strands are nearest
+                    whose waist is held; strands.py: where strands are nearest;
+                    opening.py: the twisted film of given waist, at which an eight opens
 
 A film is its loop, whose harmonic extension is minimal where it is conformal.
 """

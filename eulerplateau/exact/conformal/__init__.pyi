@@ -59,6 +59,12 @@ from .lobes import (
     lobes_twist as lobes_twist,
     two_lobes as two_lobes,
 )
+from .opening import (
+    opening_load as opening_load,
+    opening_load_by_width as opening_load_by_width,
+    twisted_film as twisted_film,
+    twisted_films as twisted_films,
+)
 from .relaxation import relax as relax
 from .second_variation import (
     Mode as Mode,

@@ -47,7 +47,7 @@ def hold(
     basis: Basis, guess: FloatArray, beta: float, force: float, load: float, width: float
 ) -> HeldFilm | None:
     """Return the film with this waist near a guess (size,); None if Newton fails."""
-    scale, across = precondition(basis), _width_gradient(basis)
+    scale, across = precondition(basis), width_gradient(basis)
     c, n, best = guess, basis.size, np.inf
     for _ in range(_STEPS):
         t = terms(basis, c)
@@ -91,7 +91,7 @@ def sharpen_grid(film: HeldFilm) -> HeldFilm:
     return film if finer is None or finer.tail > film.tail else finer
 
 
-def _width_gradient(basis: Basis) -> FloatArray:
+def width_gradient(basis: Basis) -> FloatArray:
     """Return the gradient (size,) of 2 y at phi = pi/2, y being a sum of odd sines."""
     gradient = np.zeros(basis.size)
     k = basis.wavenumbers[basis.slices[1]]

@@ -102,7 +102,9 @@ def _numbers(bench: Any, diameter: float | None, poisson: float | None) -> dict[
 
     relative = None if diameter is None else diameter / bench.length
     loads = asdict(changes(0.0 if diameter is None else bench.width(diameter)))
-    loads = {name: load if load and isfinite(load) else None for name, load in loads.items()}
+    loads = {
+        name: load if load and isfinite(load) else None for name, load in loads.items()
+    }
     return {
         "sigma_hat": bench.load,
         "kL3_alpha": bench.load / SPRING_LOAD.tension_per_load,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from eulerplateau.exact.conformal import lobes_twist, opening_load_by_width
+from eulerplateau.exact.conformal import lobes_twist, quick_opening_load_by_width
 from eulerplateau.exact.planar import TooThickError, planar_film
 from eulerplateau.exact.planar.buckled import sigma_buckling
 from eulerplateau.exact.planar.limits import contacts
@@ -48,7 +48,7 @@ def changes(width: float = 0.0) -> Changes:
         sigma_buckling(2),
         lobes_twist(),
         *contacts(2, width),
-        opening_load_by_width(width),
+        quick_opening_load_by_width(width),
     )
 
 

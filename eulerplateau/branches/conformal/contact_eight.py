@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -18,9 +17,7 @@ from eulerplateau.branches.conformal.films import checked
 from eulerplateau.branches.conformal.touching import (
     FIRST,
     Touching,
-    TouchingFamily,
-    crowding,
-    settled,
+    in_contact,
     way,
 )
 from eulerplateau.branches.conformal.with_rod import WithRod
@@ -29,24 +26,11 @@ from eulerplateau.exact.conformal import (
     TWISTED,
     make_basis,
     nearest_strands,
+    twisted_film,
 )
 
-# A film to begin with, where Newton's method starts (to be converged): the first harmonics
-# of x, y and z, beta and -F, and the crossing angle.
-_BEGIN: Mapping[str, float] = {
-    "load": 1700.0,
-    "twist_ratio": 0.0,
-    "link": 0.0,
-    "diameter": 0.1,
-}
-_COEFFICIENTS = (
-    (0.1722, 0.0311, 0.0066, 0.0010, -0.0002, -0.0002, -0.0001),
-    (0.0667, 0.0213, 0.0054, 0.0008, -0.0002, -0.0002, -0.0001),
-    (-0.0285, -0.0076, -0.0015, -0.0001, 0.0001, 0.0001, 0.0001),
-)
-_TENSIONS, _ANGLE = (-30.0, 9.0), 36.0
-# Harmonics on the way, per logarithm of the diameter and at most; the most in the end.
-_HARMONICS, _WAY, _MOST = 21, 96, 324
+# The most harmonics in the end.
+_MOST = 324
 # A point force leaves errors of O(K^-3): relative change of the energy that is small enough
 # from one number of harmonics to the next, and part of it that is left then.
 _ENOUGH, _LEFT = 1e-9, 1 / (1.5**3 - 1)
@@ -150,11 +134,13 @@ def thick_eight(
 def touching(values: Mapping[str, float]) -> Touching:
     """Return the film held at a diameter, by few harmonics; raises NoFilmError if none is.
 
-    values : "load", "twist_ratio", "link" and "diameter"
+    From where its strands touch without force, at the load at which an untwisted eight of
+    this diameter opens. values : "load", "twist_ratio", "link" and "diameter"
     """
-    harmonics = min(_WAY, math.ceil(_HARMONICS * math.log(1 / values["diameter"])))
     untwisted = {**values, "twist_ratio": 0.0, "link": 0.0}
-    return reached(reached(_first(harmonics), untwisted), values)
+    free = twisted_film(values["diameter"])
+    without_force = in_contact(free, {**untwisted, "load": free.load})
+    return reached(reached(without_force, untwisted), values)
 
 
 def reached(start: Touching, values: Mapping[str, float], step: float = FIRST) -> Touching:
@@ -178,20 +164,6 @@ def refined(film: Touching) -> tuple[Touching, Touching]:
         if abs(coarse.energy / film.energy - 1) < _ENOUGH:
             break
     return coarse, film
-
-
-@lru_cache(maxsize=4)
-def _first(harmonics: int) -> Touching:
-    """Return the film to begin with."""
-    basis = make_basis(harmonics, TWISTED, crowding(_BEGIN["diameter"], _ANGLE))
-    c = np.zeros(basis.size)
-    for part, begin in zip(basis.slices, _COEFFICIENTS, strict=True):
-        c[part][: len(begin)] = begin
-    family = TouchingFamily(basis, _BEGIN)
-    found = settled(Touching(family, family.unknowns.x(c), np.array(_TENSIONS), 0))
-    if found is None:
-        raise ArithmeticError("no twisted eight found to begin with")
-    return found
 
 
 def _measured(coarse: Touching, fine: Touching) -> ThickEight:

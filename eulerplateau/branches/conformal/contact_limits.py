@@ -19,7 +19,7 @@ from eulerplateau.branches.conformal.contact_eight import (
 from eulerplateau.branches.conformal.films import checked
 from eulerplateau.branches.conformal.touching import Touching, way
 from eulerplateau.exact import checked_diameter
-from eulerplateau.exact.conformal import TWISTED, make_basis
+from eulerplateau.exact.conformal import TWISTED, make_basis, twisted_film
 
 # Where the search begins, the loads up to which it goes, and to what part one is found.
 _MIDDLE = 1700.0
@@ -32,10 +32,15 @@ def opening_load(
 ) -> float | None:
     """Return sigma_hat at which an eight opens when it is unloaded.
 
-    Parameters are those of `thick_eight`. None if there is no such load above 25, or below
-    5100, before Newton's method fails. Raises SpecError for wrong parameters, and
-    NoFilmError where no film is found to begin with.
+    Parameters are those of `thick_eight`. Where twist costs nothing it is the load of the
+    twisted film as wide, in seconds. With twist films in contact are followed, in minutes:
+    None if there is no such load above 25, or below 5100, before Newton's method fails.
+    Raises SpecError for wrong parameters, NoFilmError where no film is found to begin
+    with, and BranchError where harmonics do not resolve the twisted one.
     """
+    checked(_MIDDLE, twist_ratio, link)
+    if twist_ratio == 0:
+        return twisted_film(diameter).load
     start = _middle(diameter, twist_ratio, link)
     return _crossed(start, _LOWEST if start.force > 0 else _HIGHEST, _force)
 

@@ -22,6 +22,7 @@ from eulerplateau.branches.point import BranchPoint, first_point
 from eulerplateau.exact.conformal import (
     TWISTED,
     Basis,
+    ConformalFilm,
     Crossing,
     bending_energy,
     loop_length,
@@ -166,6 +167,13 @@ class Touching:
         family = replace(self.family, basis=basis)
         x = family.transferred(self.family, self.x)
         return settled(replace(self, family=family, x=x))
+
+
+def in_contact(film: ConformalFilm, values: Mapping[str, float]) -> Touching:
+    """Return a film of no force between its strands as one in contact, at its values."""
+    family = TouchingFamily(film.basis, values)
+    x, tensions = family.unknowns.x(film.coefficients), np.array([film.beta, 0.0])
+    return _regraded(Touching(family, x, tensions, 0))
 
 
 def settled(guess: Touching) -> Touching | None:

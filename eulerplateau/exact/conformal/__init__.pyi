@@ -60,8 +60,8 @@ from .lobes import (
     two_lobes as two_lobes,
 )
 from .opening import (
-    opening_load as opening_load,
-    opening_load_by_width as opening_load_by_width,
+    quick_opening_load as quick_opening_load,
+    quick_opening_load_by_width as quick_opening_load_by_width,
     twisted_film as twisted_film,
     twisted_films as twisted_films,
 )

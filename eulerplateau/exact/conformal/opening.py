@@ -54,15 +54,31 @@ _KNOWN = 6
 # --coefficients` prints these numbers. Good to 1e-4.
 _LOADS = Chebyshev(
     (
-    914.244217, 610.704242, 181.885317, 40.762236, 2.276929, -3.872812, -2.582042,
-    -0.983505, -0.214170, 0.015454, 0.040925, 0.022421, 0.007456, 0.001150, -0.000431,
-    -0.000440, -0.000204, -0.000059, -0.000008,
+        914.244217,
+        610.704242,
+        181.885317,
+        40.762236,
+        2.276929,
+        -3.872812,
+        -2.582042,
+        -0.983505,
+        -0.214170,
+        0.015454,
+        0.040925,
+        0.022421,
+        0.007456,
+        0.001150,
+        -0.000431,
+        -0.000440,
+        -0.000204,
+        -0.000059,
+        -0.000008,
     ),
     domain=(log(5e-4), log(_WIDEST)),
 )
 
 
-def opening_load(diameter: float) -> float:
+def quick_opening_load(diameter: float) -> float:
     """Return sigma_hat at which an eight opens whose twist escapes, to 1e-4, at once.
 
     Raises SpecError unless 5e-4 <= diameter <= 0.1, in L. `twisted_film` knows more digits.
@@ -73,10 +89,10 @@ def opening_load(diameter: float) -> float:
     return float(_LOADS(found))
 
 
-def opening_load_by_width(width: float) -> float | None:
+def quick_opening_load_by_width(width: float) -> float | None:
     """Return that for a line of a diameter in units of (alpha / sigma)^(1/3).
 
-    None where the diameter is less or more, in units of L, than `opening_load` takes.
+    None where the diameter is less or more, in units of L, than `quick_opening_load` takes.
     """
 
     def too_wide(size: float) -> float:

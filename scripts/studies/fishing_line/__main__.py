@@ -1,0 +1,48 @@
+"""Print the tables of docs/fishing-line.md and draw its diagram."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from eulerplateau.threads import one_thread
+from scripts.studies.common import ROOT, machine, markdown_table
+from scripts.studies.fishing_line.cycle import Cycle
+from scripts.studies.fishing_line.figures import draw_loop
+from scripts.studies.fishing_line.loads import coefficients, openings
+
+
+@click.command()
+@click.option("--coefficients", "print_series", is_flag=True, help="Print those only.")
+@click.option(
+    "--run",
+    "runs",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="A run up and down, to be put beside the films without a mesh.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    default=ROOT / "docs/pictures/fishing-line",
+    help="Folder of the diagram. Default: docs/pictures/fishing-line.",
+)
+def main(print_series: bool, runs: tuple[Path, ...], out: Path) -> None:
+    """Print where eights open, and runs beside the films without a mesh."""
+    with one_thread():
+        if print_series:
+            click.echo(", ".join(f"{each:.6f}" for each in coefficients()))
+            return
+        click.echo(machine())
+        click.echo(markdown_table(openings(), 0))
+        cycles = [Cycle.of_run(folder) for folder in runs]
+        for cycle in cycles:
+            click.echo(f"d = {cycle.diameter:g}")
+            click.echo(markdown_table(cycle.table(), 0))
+        out.mkdir(parents=True, exist_ok=True)
+        draw_loop(out / "loop.png", cycles)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,111 @@
+"""A run of a thick loop, up and down, next to the films without a mesh at its loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from eulerplateau.branches.conformal import opening_load
+from eulerplateau.branches.conformal.contact_eight import reached, refined, touching
+from eulerplateau.branches.conformal.touching import Touching
+from eulerplateau.exact import planar_film
+from eulerplateau.exact.conformal import BUCKLING
+from eulerplateau.runs import read_run
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """The rows of a sweep up and down at one diameter, of a loop whose twist escapes."""
+
+    rows: Sequence[Any]
+    diameter: float
+
+    @classmethod
+    def of_run(cls, folder: Path) -> Cycle:
+        """Return that of a run's folder."""
+        run = read_run(folder)
+        return cls(run.rows, float(run.about["spec"]["loop"]["diameter"]))
+
+    @property
+    def top(self) -> int:
+        """The step of the highest load."""
+        return max(self.rows, key=lambda row: row.sigma_hat).step
+
+    @property
+    def up(self) -> dict[float, Any]:
+        """The rows of rising load, by load."""
+        return {row.sigma_hat: row for row in self.rows if row.step <= self.top}
+
+    @property
+    def down(self) -> dict[float, Any]:
+        """The rows of falling load, and the highest, by load."""
+        return {row.sigma_hat: row for row in self.rows if row.step >= self.top}
+
+    @cached_property
+    def eights(self) -> dict[float, Touching]:
+        """The eights in contact without a mesh, at the loads at which one point touches."""
+        opens, found = opening_load(self.diameter), {}
+        for load in sorted(self.up):
+            touches = [
+                way[load].contacts == 1 for way in (self.up, self.down) if load in way
+            ]
+            if load > opens and any(touches):
+                values = {"load": load, "twist_ratio": 0.0, "link": 0.0}
+                wanted = {**values, "diameter": self.diameter}
+                film = reached(film, wanted) if found else touching(wanted)
+                found[load] = film
+        return found
+
+    def table(self) -> Iterator[list[str]]:
+        """Yield a head, then each load: states up and down, the eight, the mesh's errors."""
+        yield [
+            "load",
+            "up",
+            "down",
+            "energy",
+            "force",
+            "angle",
+            "energy, mesh",
+            "force, mesh",
+            "angle, mesh",
+        ]
+        for load, up in sorted(self.up.items()):
+            down = self.down.get(load)
+            row = down if down is not None else up
+            yield [
+                f"{load:g}",
+                _state(up),
+                "" if down is None else _state(down),
+                *self._numbers(load, row),
+            ]
+
+    def _numbers(self, load: float, row: Any) -> list[str]:
+        """Return the mesh-free film's numbers of a row's state, and what the mesh is off."""
+        if row.contacts == 0:
+            flat = planar_film(2, load)
+            off = row.energy / flat.energy - 1
+            return [f"{flat.energy:.4f}", "", "", f"{off:.0e}", "", ""]
+        if load not in self.eights:
+            return ["-"] * 6
+        _, exact = refined(self.eights[load])
+        angle = exact.crossing.angle
+        return [
+            f"{exact.energy:.4f}",
+            f"{exact.force:.3f}",
+            f"{angle:.2f}",
+            f"{row.energy / exact.energy - 1:.0e}",
+            f"{row.contact_force / exact.force - 1:.0e}",
+            f"{row.crossing_angle - angle:.2f}",
+        ]
+
+
+def _state(row: Any) -> str:
+    """Return in words what a row's film is."""
+    if not row.converged:
+        return str(row.status.value)
+    if row.contacts == 0:
+        return "disk" if row.sigma_hat < BUCKLING else "two lobes"
+    return "eight" if row.contacts == 1 else f"{row.contacts} contacts"

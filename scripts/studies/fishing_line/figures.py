@@ -1,0 +1,59 @@
+"""The diagram of docs/fishing-line.md."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from eulerplateau.exact.conformal import BUCKLING, lobes_twist, quick_opening_load
+from eulerplateau.pictures.figure import BLACK, BLUE, GREEN, VERMILION, frame, save
+from scripts.studies.fishing_line.cycle import Cycle
+from scripts.studies.fishing_line.loads import flat_waist, free_waists
+
+_LINES = ((0.05, VERMILION), (0.01, BLUE), (0.001, GREEN))
+_LOADS = 400.0, 2700.0
+
+
+def draw_loop(path: Path, cycles: Sequence[Cycle]) -> None:
+    """Draw the waist over the load: the way up, the way down, and what runs found."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.2, 4.6), layout="constrained")
+    ax = figure.subplots()
+    jumps = lobes_twist()
+    flat = np.linspace(BUCKLING, jumps, 120)
+    waists = [flat_waist(load) for load in flat]
+    ax.plot([_LOADS[0], BUCKLING, *flat[1:]], [1 / np.pi, 1 / np.pi, *waists[1:]], BLACK)
+    loads, free = free_waists()
+    ax.plot(
+        [jumps, *loads],
+        [waists[-1], *free],
+        "--",
+        color=BLACK,
+        lw=1,
+        label="unstable: twisted film that nothing touches",
+    )
+    for diameter, colour in _LINES:
+        opens = quick_opening_load(diameter)
+        label = f"eight of a line of d = {diameter:g}"
+        ax.plot([opens, _LOADS[1]], [diameter] * 2, color=colour, label=label)
+        _arrow(ax, opens, diameter, 1 / np.pi, colour)
+    _arrow(ax, jumps, waists[-1], _LINES[-1][0], BLACK)
+    for cycle in cycles:
+        for way, marker in ((cycle.up, "^"), (cycle.down, "v")):
+            eights = [load for load, row in way.items() if row.contacts]
+            ax.plot(eights, [cycle.diameter] * len(eights), marker, color=BLACK, ms=3, lw=0)
+    ax.set(yscale="log", xlim=_LOADS, xlabel=r"$\hat\sigma=\sigma L^3/\alpha$")
+    ax.set_ylabel("least distance of the strands, in $L$")
+    ax.legend(frameon=False, fontsize=8, loc="center right")
+    frame(ax)
+    ax.set_xlim(_LOADS)
+    save(figure, path)
+
+
+def _arrow(ax, load: float, start: float, end: float, colour: str) -> None:  # type: ignore[no-untyped-def]
+    """Draw a jump."""
+    style = {"arrowstyle": "->", "color": colour, "lw": 1, "ls": ":"}
+    ax.annotate("", (load, end), (load, start), arrowprops=style)

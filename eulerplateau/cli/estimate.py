@@ -31,8 +31,7 @@ _CHANGES = {
     "jumps": "two lobes jump to a pinched eight, if the line's ends turn freely",
     "touches": "if they do not: the two lobes' sides touch in a point",
     "touches_along_a_line": "and along a line",
-    "opens": "a pinched eight opens again, its strands a diameter apart, if the line's ends "
-    "turn freely",
+    "opens": "an eight in contact opens again, if the line's ends turn freely",
 }
 _NOT = {
     "touches": "not where the line's curvature stays below 2/d",
@@ -102,9 +101,7 @@ def _numbers(bench: Any, diameter: float | None, poisson: float | None) -> dict[
 
     relative = None if diameter is None else diameter / bench.length
     loads = asdict(changes(0.0 if diameter is None else bench.width(diameter)))
-    loads = {
-        name: load if load and isfinite(load) else None for name, load in loads.items()
-    }
+    loads = {name: load if isfinite(load) else None for name, load in loads.items()}
     return {
         "sigma_hat": bench.load,
         "kL3_alpha": bench.load / SPRING_LOAD.tension_per_load,

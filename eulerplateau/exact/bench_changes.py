@@ -28,7 +28,7 @@ class Changes:
     jumps : two lobes become a pinched eight, if the line's twist escapes
     touches, touches_along_a_line : the two lobes' sides, if it does not
     opens : an eight whose strands touch opens again, unloaded, if the line's twist escapes;
-        None where that is not known: of a line without a thickness, or one that is thinner
+        NaN where that is not known: of a line without a thickness, or one that is thinner
         or thicker than those whose films are known
     """
 
@@ -36,7 +36,7 @@ class Changes:
     jumps: float
     touches: float
     touches_along_a_line: float
-    opens: float | None
+    opens: float
 
 
 def changes(width: float = 0.0) -> Changes:

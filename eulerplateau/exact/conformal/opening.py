@@ -10,7 +10,7 @@ falls all the way from where they leave the flat ones; the load is an unknown.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import ceil, exp, log, sqrt
+from math import ceil, exp, log, nan, sqrt
 
 import numpy as np
 from numpy.polynomial import Chebyshev
@@ -41,7 +41,7 @@ _COEFFICIENTS = (
 )
 _BETA, _LOAD = -70.3, 1742.0
 _BEGIN, _FIRST_HARMONICS = 20, 48
-# Harmonics per logarithm of the width, in blocks: films of one number are extrapolated best.
+# Harmonics per logarithm of the width, in blocks: films of one number extrapolate best.
 _HARMONICS, _BLOCK = 21, 24
 # The crowding of the grid: the neck's conformal length is a power of its width, nearly.
 _CROWDING, _AT, _POWER = 2.7e-5, 0.01, 2.3
@@ -89,10 +89,10 @@ def quick_opening_load(diameter: float) -> float:
     return float(_LOADS(found))
 
 
-def quick_opening_load_by_width(width: float) -> float | None:
+def quick_opening_load_by_width(width: float) -> float:
     """Return that for a line of a diameter in units of (alpha / sigma)^(1/3).
 
-    None where the diameter is less or more, in units of L, than `quick_opening_load` takes.
+    NaN where the diameter is less or more, in units of L, than `quick_opening_load` takes.
     """
 
     def too_wide(size: float) -> float:
@@ -100,7 +100,7 @@ def quick_opening_load_by_width(width: float) -> float | None:
 
     low, high = _LOADS.domain
     if not too_wide(low) <= 0 <= too_wide(high):
-        return None
+        return nan
     return float(_LOADS(brentq(too_wide, low, high)))
 
 

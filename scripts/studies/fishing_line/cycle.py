@@ -8,11 +8,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from eulerplateau.branches.conformal import opening_load
 from eulerplateau.branches.conformal.contact_eight import reached, refined, touching
 from eulerplateau.branches.conformal.touching import Touching
 from eulerplateau.exact import planar_film
-from eulerplateau.exact.conformal import BUCKLING
+from eulerplateau.exact.conformal import BUCKLING, twisted_film
 from eulerplateau.runs import read_run
 
 
@@ -47,20 +46,23 @@ class Cycle:
     @cached_property
     def eights(self) -> dict[float, Touching]:
         """The eights in contact without a mesh, at the loads at which one point touches."""
-        opens, found = opening_load(self.diameter), {}
+        opens = twisted_film(self.diameter).load
+        films: dict[float, Touching] = {}
         for load in sorted(self.up):
-            touches = [
-                way[load].contacts == 1 for way in (self.up, self.down) if load in way
-            ]
-            if load > opens and any(touches):
-                values = {"load": load, "twist_ratio": 0.0, "link": 0.0}
-                wanted = {**values, "diameter": self.diameter}
-                film = reached(film, wanted) if found else touching(wanted)
-                found[load] = film
-        return found
+            if load <= opens or not any(row.contacts == 1 for row in self._at(load)):
+                continue
+            values = {"load": load, "twist_ratio": 0.0, "link": 0.0}
+            wanted = {**values, "diameter": self.diameter}
+            last = films[max(films)] if films else touching(wanted)
+            films[load] = reached(last, wanted)
+        return films
+
+    def _at(self, load: float) -> list[Any]:
+        """Return the rows at a load."""
+        return [way[load] for way in (self.up, self.down) if load in way]
 
     def table(self) -> Iterator[list[str]]:
-        """Yield a head, then each load: states up and down, the eight, the mesh's errors."""
+        """Yield a head, then by load: states up and down, the film, a mesh's errors."""
         yield [
             "load",
             "up",
@@ -83,7 +85,7 @@ class Cycle:
             ]
 
     def _numbers(self, load: float, row: Any) -> list[str]:
-        """Return the mesh-free film's numbers of a row's state, and what the mesh is off."""
+        """Return the numbers of a row's film without a mesh, and what the mesh is off."""
         if row.contacts == 0:
             flat = planar_film(2, load)
             off = row.energy / flat.energy - 1

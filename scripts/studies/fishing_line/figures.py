@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -27,33 +28,28 @@ def draw_loop(path: Path, cycles: Sequence[Cycle]) -> None:
     waists = [flat_waist(load) for load in flat]
     ax.plot([_LOADS[0], BUCKLING, *flat[1:]], [1 / np.pi, 1 / np.pi, *waists[1:]], BLACK)
     loads, free = free_waists()
-    ax.plot(
-        [jumps, *loads],
-        [waists[-1], *free],
-        "--",
-        color=BLACK,
-        lw=1,
-        label="unstable: twisted film that nothing touches",
-    )
+    ax.plot([jumps, *loads], [waists[-1], *free], "--", color=BLACK, lw=1)
+    ax.text(1000, 0.026, "twisted,\nunstable", ha="right", fontsize=9)
+    ax.text(600, 0.35, "disk", fontsize=9)
+    ax.text(1720, 0.17, "two lobes", fontsize=9)
     for diameter, colour in _LINES:
         opens = quick_opening_load(diameter)
-        label = f"eight of a line of d = {diameter:g}"
-        ax.plot([opens, _LOADS[1]], [diameter] * 2, color=colour, label=label)
+        ax.plot([opens, _LOADS[1]], [diameter] * 2, color=colour)
+        ax.text(1950, 1.1 * diameter, f"eight in contact, $d={diameter:g}$", fontsize=9)
         _arrow(ax, opens, diameter, 1 / np.pi, colour)
     _arrow(ax, jumps, waists[-1], _LINES[-1][0], BLACK)
     for cycle in cycles:
         for way, marker in ((cycle.up, "^"), (cycle.down, "v")):
             eights = [load for load, row in way.items() if row.contacts]
             ax.plot(eights, [cycle.diameter] * len(eights), marker, color=BLACK, ms=3, lw=0)
-    ax.set(yscale="log", xlim=_LOADS, xlabel=r"$\hat\sigma=\sigma L^3/\alpha$")
+    ax.set(yscale="log", xlabel=r"$\hat\sigma=\sigma L^3/\alpha$")
     ax.set_ylabel("least distance of the strands, in $L$")
-    ax.legend(frameon=False, fontsize=8, loc="center right")
     frame(ax)
     ax.set_xlim(_LOADS)
     save(figure, path)
 
 
-def _arrow(ax, load: float, start: float, end: float, colour: str) -> None:  # type: ignore[no-untyped-def]
+def _arrow(ax: Any, load: float, start: float, end: float, colour: str) -> None:
     """Draw a jump."""
     style = {"arrowstyle": "->", "color": colour, "lw": 1, "ls": ":"}
     ax.annotate("", (load, end), (load, start), arrowprops=style)

@@ -149,6 +149,19 @@ def test_eight_opens_where_the_twisted_film_is_as_wide():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("diameter", [0.03, 0.004])
+def test_strands_push_above_the_opening_load_and_pull_below(diameter):
+    """By films in contact, from another load; where their force vanishes is the load."""
+    opens, far = opening_load(diameter), touching_at(diameter)
+    below, above = (
+        reached(far, {**far.values, "load": (1 + part) * opens}).force
+        for part in (-1e-3, 1e-3)
+    )
+    assert below < 0 < above
+    assert abs(below + above) < 1e-2 * above
+
+
+@pytest.mark.slow
 def test_contact_splits_where_strands_would_overlap_beside_it():
     """The index rises there too: the strands turn away from each other's way."""
     splits = splitting_load(0.05)

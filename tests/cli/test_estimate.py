@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from eulerplateau.exact import Bench, thresholds
+from eulerplateau.exact.conformal import quick_opening_load
 from tests.helpers.command import run_here
 
 NYLON = {
@@ -40,7 +41,6 @@ def test_a_nylon_line_has_the_load_of_its_definition() -> None:
     assert numbers["kL3_alpha"] * 2 * 3**0.5 == pytest.approx(load, rel=1e-12)
     assert numbers["diameter"] == pytest.approx(0.001, rel=1e-12)
     assert numbers["elastocapillary_length"] ** 3 * 0.05 == pytest.approx(rigidity)
-    assert numbers["lengths"]["opens"] is None
 
 
 def test_a_rigidity_says_as_much_as_modulus_and_diameter() -> None:
@@ -87,6 +87,17 @@ def test_sides_touch_a_diameter_apart() -> None:
     assert thick["lengths"]["touches"] is None
     assert thick["film"]["welded"] == "too_thick"
     assert thick["loads"]["buckles"] == numbers["loads"]["buckles"]
+
+
+def test_an_eight_opens_where_its_waist_is_as_wide_as_the_line() -> None:
+    numbers = estimated()
+    relative = 0.2e-3 / numbers["lengths"]["opens"]
+    opens = numbers["loads"]["opens"]
+    assert opens == pytest.approx(quick_opening_load(relative), rel=1e-9)
+    assert opens < numbers["loads"]["buckles"]
+    for modulus in ("20 GPa", "30 Pa"):  # too thin and too thick for its length there
+        beyond = estimated(diameter="20 mm", young=modulus)
+        assert beyond["lengths"]["opens"] is None
 
 
 def test_what_is_printed_speaks_the_unit_of_the_length() -> None:

@@ -10,7 +10,7 @@ falls all the way from where they leave the flat ones; the load is an unknown.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import ceil, exp, log, nan, sqrt
+from math import cbrt, ceil, exp, log, nan, sqrt
 
 import numpy as np
 from numpy.polynomial import Chebyshev
@@ -96,7 +96,7 @@ def quick_opening_load_by_width(width: float) -> float:
     """
 
     def too_wide(size: float) -> float:
-        return exp(size) * float(_LOADS(size)) ** (1 / 3) - width
+        return exp(size) * cbrt(float(_LOADS(size))) - width
 
     low, high = _LOADS.domain
     if not too_wide(low) <= 0 <= too_wide(high):

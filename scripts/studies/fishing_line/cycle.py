@@ -31,7 +31,7 @@ class Cycle:
     @property
     def top(self) -> int:
         """The step of the highest load."""
-        return max(self.rows, key=lambda row: row.sigma_hat).step
+        return int(max(self.rows, key=lambda row: row.sigma_hat).step)
 
     @property
     def up(self) -> dict[float, Any]:

@@ -14,6 +14,10 @@ from eulerplateau.exact import planar_film
 from eulerplateau.exact.conformal import BUCKLING, twisted_film
 from eulerplateau.runs import read_run
 
+# Up to where films in contact are computed: beyond, as their crossing closes, the ends of
+# the loop crowd on the conformal grid beyond what a double holds.
+_HIGHEST = 4000.0
+
 
 @dataclass(frozen=True)
 class Cycle:
@@ -49,7 +53,9 @@ class Cycle:
         opens = twisted_film(self.diameter).load
         films: dict[float, Touching] = {}
         for load in sorted(self.up):
-            if load <= opens or not any(row.contacts == 1 for row in self._at(load)):
+            if not opens < load <= _HIGHEST or not any(
+                row.contacts == 1 for row in self._at(load)
+            ):
                 continue
             values = {"load": load, "twist_ratio": 0.0, "link": 0.0}
             wanted = {**values, "diameter": self.diameter}

@@ -29,9 +29,9 @@ def draw_loop(path: Path, cycles: Sequence[Cycle]) -> None:
     ax.plot([_LOADS[0], BUCKLING, *flat[1:]], [1 / np.pi, 1 / np.pi, *waists[1:]], BLACK)
     loads, free = free_waists()
     ax.plot([jumps, *loads], [waists[-1], *free], "--", color=BLACK, lw=1)
-    ax.text(1000, 0.026, "twisted,\nunstable", ha="right", fontsize=9)
+    ax.text(1080, 0.017, "twisted, unstable", fontsize=9)
     ax.text(600, 0.35, "disk", fontsize=9)
-    ax.text(1720, 0.17, "two lobes", fontsize=9)
+    ax.text(1790, 0.17, "two lobes", fontsize=9)
     for diameter, colour in _LINES:
         opens = quick_opening_load(diameter)
         ax.plot([opens, _LOADS[1]], [diameter] * 2, color=colour)

@@ -24,7 +24,7 @@ def welded_table(folders: Sequence[Path]) -> Iterator[list[str]]:
         loop = run.about["spec"]["loop"]
         top = max(run.rows, key=lambda row: row.sigma_hat).step
         down = {row.sigma_hat: row for row in run.rows if row.step >= top}
-        for row in run.rows[: top + 1]:
+        for row in (row for row in run.rows[: top + 1] if row.sigma_hat in down):
             last = down[row.sigma_hat]
             yield [
                 f"{loop['twist_ratio']:.3f}",

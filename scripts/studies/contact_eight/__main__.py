@@ -22,7 +22,8 @@ DIAMETERS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
 NARROW = (0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
 LOAD = 1700.0
 ROD = 2 / 3, 1.0
-# The least diameter of which the load is sought at which contact splits: a slow search.
+# The least diameter of which the load is sought at which contact splits: of thinner lines
+# the conformal grid is too crowded there.
 SPLIT = 0.02
 
 

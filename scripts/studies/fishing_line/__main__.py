@@ -11,6 +11,7 @@ from scripts.studies.common import ROOT, machine, markdown_table
 from scripts.studies.fishing_line.cycle import Cycle
 from scripts.studies.fishing_line.figures import draw_loop
 from scripts.studies.fishing_line.loads import coefficients, openings
+from scripts.studies.fishing_line.welded import disk_yields, welded_table
 
 
 @click.command()
@@ -23,12 +24,20 @@ from scripts.studies.fishing_line.loads import coefficients, openings
     help="A run up and down, to be put beside the films without a mesh.",
 )
 @click.option(
+    "--welded",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="A run up and down of a line that resists twist.",
+)
+@click.option(
     "--out",
     type=click.Path(path_type=Path),
     default=ROOT / "docs/pictures/fishing-line",
     help="Folder of the diagram. Default: docs/pictures/fishing-line.",
 )
-def main(print_series: bool, runs: tuple[Path, ...], out: Path) -> None:
+def main(
+    print_series: bool, runs: tuple[Path, ...], welded: tuple[Path, ...], out: Path
+) -> None:
     """Print where eights open, and runs beside the films without a mesh."""
     with one_thread():
         if print_series:
@@ -40,6 +49,10 @@ def main(print_series: bool, runs: tuple[Path, ...], out: Path) -> None:
         for cycle in cycles:
             click.echo(f"d = {cycle.diameter:g}")
             click.echo(markdown_table(cycle.table(), 0))
+        for link in (0.5, 1.0):
+            click.echo(f"disk of Lk = {link:g} yields at {disk_yields(2 / 3, link):.2f}")
+        if welded:
+            click.echo(markdown_table(welded_table(welded), 0))
         out.mkdir(parents=True, exist_ok=True)
         draw_loop(out / "loop.png", cycles)
 

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import degrees
 from pathlib import Path
 from typing import Any
 
 from eulerplateau.branches.conformal.contact_eight import reached, refined, touching
-from eulerplateau.branches.conformal.touching import Touching
+from eulerplateau.branches.conformal.touching import Touching, crowding
 from eulerplateau.exact import planar_film
-from eulerplateau.exact.conformal import BUCKLING, twisted_film
+from eulerplateau.exact.conformal import BUCKLING, flat_eight, twisted_film
 from eulerplateau.runs import read_run
 
-# Up to where films in contact are computed: beyond, as their crossing closes, the ends of
-# the loop crowd on the conformal grid beyond what a double holds.
-_HIGHEST = 4000.0
+# As their crossing closes the ends of the loop crowd on the conformal grid: films in
+# contact are computed up to where they do so by this.
+_CROWDED = 1e-11
 
 
 @dataclass(frozen=True)
@@ -52,10 +53,8 @@ class Cycle:
         """The eights in contact without a mesh, at the loads at which one point touches."""
         opens = twisted_film(self.diameter).load
         films: dict[float, Touching] = {}
-        for load in sorted(self.up):
-            if not opens < load <= _HIGHEST or not any(
-                row.contacts == 1 for row in self._at(load)
-            ):
+        for load in filter(self._is_known, sorted(self.up)):
+            if load <= opens:
                 continue
             values = {"load": load, "twist_ratio": 0.0, "link": 0.0}
             wanted = {**values, "diameter": self.diameter}
@@ -63,9 +62,12 @@ class Cycle:
             films[load] = reached(last, wanted)
         return films
 
-    def _at(self, load: float) -> list[Any]:
-        """Return the rows at a load."""
-        return [way[load] for way in (self.up, self.down) if load in way]
+    def _is_known(self, load: float) -> bool:
+        """Return whether a row touches in one point where harmonics resolve that."""
+        rows = (way[load] for way in (self.up, self.down) if load in way)
+        angle = degrees(2 * abs(flat_eight(load).angle))
+        resolved = crowding(self.diameter, angle) > _CROWDED
+        return resolved and any(row.contacts == 1 for row in rows)
 
     def table(self) -> Iterator[list[str]]:
         """Yield a head, then by load: states up and down, the film, a mesh's errors."""

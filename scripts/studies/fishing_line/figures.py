@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,14 +39,25 @@ def draw_loop(path: Path, cycles: Sequence[Cycle]) -> None:
         _arrow(ax, opens, diameter, 1 / np.pi, colour)
     _arrow(ax, jumps, waists[-1], _LINES[-1][0], BLACK)
     for cycle in cycles:
-        for way, marker in ((cycle.up, "^"), (cycle.down, "v")):
-            eights = [load for load, row in way.items() if row.contacts]
-            ax.plot(eights, [cycle.diameter] * len(eights), marker, color=BLACK, ms=3, lw=0)
+        _mark_rows(ax, cycle.up, cycle.diameter, "^", "rising")
+        _mark_rows(ax, cycle.down, cycle.diameter, "v", "falling")
+    if cycles:
+        marks = dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
+        ax.legend(marks.values(), marks, loc="upper right", fontsize=9, frameon=False)
     ax.set(yscale="log", xlabel=r"$\hat\sigma=\sigma L^3/\alpha$")
     ax.set_ylabel("least distance of the strands, in $L$")
     frame(ax)
     ax.set_xlim(_LOADS)
     save(figure, path)
+
+
+def _mark_rows(
+    ax: Any, rows: Mapping[float, Any], diameter: float, marker: str, way: str
+) -> None:
+    """Mark a run's rows in contact."""
+    eights = [load for load, row in rows.items() if row.contacts]
+    label = f"on a mesh, load {way}"
+    ax.plot(eights, [diameter] * len(eights), marker, color=BLACK, ms=3, lw=0, label=label)
 
 
 def _arrow(ax: Any, load: float, start: float, end: float, colour: str) -> None:

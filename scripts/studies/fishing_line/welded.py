@@ -35,7 +35,7 @@ def welded_table(folders: Sequence[Path]) -> Iterator[list[str]]:
                 f"{last.energy:.3f}",
                 f"{last.contact_force:.2f}" if last.contacts else "",
                 f"{last.crossing_angle:.2f}" if last.contacts else "",
-                f"{last.writhe:.4f}",
+                f"{round(last.writhe, 4) + 0.0:.4f}",
             ]
 
 

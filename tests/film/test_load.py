@@ -17,7 +17,7 @@ from eulerplateau.film.models import make_film
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.comparison import runs_figure
 from eulerplateau.pictures.gallery import collect, page
-from eulerplateau.pictures.render.pages import caption
+from eulerplateau.pictures.render.captions import text_of
 from eulerplateau.runs import run_branches, run_sweep
 from eulerplateau.runs.record import read_run, read_runs
 from eulerplateau.runs.rows import BranchRow, Row
@@ -129,8 +129,8 @@ def test_figures_are_over_the_films_own_load(tmp_path: Path, mesh: Disk, what: s
 
 def test_captions_and_galleries_name_the_films_own_load(tmp_path: Path, mesh: Disk) -> None:
     rows = tension_rows()
-    assert TENSION.tex in caption(rows[0])
-    assert SPRING_LOAD.tex in caption(ROW)
+    assert TENSION.tex in text_of(rows[0])
+    assert SPRING_LOAD.tex in text_of(ROW)
     folder = record(tmp_path / "run", mesh, rows, model="dirichlet")
     text = page(collect([folder])).decode()
     start = text.index('id="data">') + len('id="data">')

@@ -7,7 +7,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.exploration import Limits, explore_from
-from eulerplateau.branches.films import FilmFamily
+from eulerplateau.branches.film_family import FilmFamily
 from eulerplateau.film.area import (
     AreaFilm,
     local_film,

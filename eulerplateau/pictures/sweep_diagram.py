@@ -88,6 +88,8 @@ def diagram_figure(run: Run) -> Figure:
         (series, Look(_RISING, _FALLING, _NOT_CONVERGED, series.name))
         for series in run.series
     ]
+    # They are the first leg's: where there is another it is said whose.
+    band = ", ".join([kind.band, *(each.name for each in run.series[:-1])])
     axes = draw_panels(
         part or figure,
         kind.sweep,
@@ -95,7 +97,7 @@ def diagram_figure(run: Run) -> Figure:
         run.load.label,
         window=window,
         bands=_bands(run, kind.banded),
-        band=kind.band,
+        band=band,
         one_height=True,
     )
     if shown:

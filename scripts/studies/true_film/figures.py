@@ -94,7 +94,7 @@ def draw_branches(path: Path, rows: Any, onset: float) -> None:
     eight = np.array([flat_eight(load).energy for load in loads])
     disk = loads / (4 * pi) + 4 * pi**2
     lobes = np.array([planar_film(2, load).energy for load in loads])
-    _split(left, loads, disk - eight, 48 * pi**3, "0.45", "disk", below=True)
+    _split(left, loads, disk - eight, 48 * pi**3, "0.7", "disk", below=True)
     buckled = loads > 48 * pi**3
     _split(left, loads[buckled], (lobes - eight)[buckled], onset, BLUE, "two lobes", True)
     twisted = [r for r in rows if r.branch == "twisted"]
@@ -110,7 +110,7 @@ def draw_branches(path: Path, rows: Any, onset: float) -> None:
     x2 = np.array([r.sigma_hat for r in saddles])
     base = x2 / (4 * pi) + 4 * pi**2
     wide = np.linspace(2400, 7000, 100)
-    right.axhline(0, ls=":", color="0.45", label="disk (index 2, 4, ...)")
+    right.axhline(0, ls=":", color="0.7", label="disk (index 2, 4, ...)")
     right.plot(
         x2,
         [r.energy for r in saddles] - base,

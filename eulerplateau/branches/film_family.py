@@ -87,7 +87,7 @@ class FilmFamily:
 
     def near(self, x: FloatArray) -> FilmFamily:
         """Return the film made anew at a loop (n_b, 3), and what touches there."""
-        return replace(self, contact=self.contact.near(x))._with(self.film.renewed(x))
+        return self._with(self.film.renewed(x), self.contact.near(x))
 
     def released(self, x: FloatArray) -> FilmFamily:
         """Return the film as a minimal surface, where it is curved."""
@@ -116,9 +116,8 @@ class FilmFamily:
         shape, tensions = self.film.shape(x), point.model.tensions[: len(x)]
         pushes = None if contacts is None else contacts.pushes
         found = problem.equilibrium(shape, tensions, load, Status.CONVERGED, pushes)
-        classified = problem.classified(replace(found, contacts=contacts))
-        classified = replace(classified, iterations=point.corrections)
-        return replace(classified, stability=point.stability)
+        found = problem.classified(replace(found, contacts=contacts))
+        return replace(found, iterations=point.corrections, stability=point.stability)
 
     def _with(
         self, film: FilmOfLoop, contact: NoContact | Contact | None = None

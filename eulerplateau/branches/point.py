@@ -64,9 +64,7 @@ def first_point(
     energy = family.energy(value)
     model = tangent_model(energy, x)
     upwards = Direction(np.zeros_like(x), control.unit)
-    slope = parameter_slope(family, energy, model)
-    drift = parameter_drift(family, energy, model)
-    direction = branch_direction(model, slope, upwards, control, drift)
+    direction = _tangent(family, energy, model, upwards, control)
     return BranchPoint(family, model, value, direction, 0.0, 0)
 
 
@@ -82,10 +80,21 @@ def point_on(
     if there is None:
         return None
     model = tangent_model(energy, there)
+    way = _tangent(family, energy, model, last, control)
+    return correct(family, there, value, way, control)
+
+
+def _tangent(
+    family: Family,
+    energy: LoopEnergy,
+    model: TangentModel,
+    last: Direction,
+    control: StepControl,
+) -> Direction:
+    """Return the direction of a branch at its point, turned the way of `last`."""
     slope = parameter_slope(family, energy, model)
     drift = parameter_drift(family, energy, model)
-    way = branch_direction(model, slope, last, control, drift)
-    return correct(family, there, value, way, control)
+    return branch_direction(model, slope, last, control, drift)
 
 
 def point_near(

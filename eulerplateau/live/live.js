@@ -133,7 +133,7 @@ function showPoints({ points, asker }) {
       }
     }
     if (key === about.varied[0].key) {
-      const written = [text(value, 6), unit].filter(Boolean).join(" ");
+      const written = [shownText(value), unit].filter(Boolean).join(" ");
       find("headline").textContent = `${about.name}: ${symbol} = ${written}`;
     }
   }
@@ -150,7 +150,7 @@ function showNumbers(row) {
   last = row;
   if (pausing) return;
   for (const { key, unit } of quantities) {
-    cells.get(key).textContent = text(row[key], 6) + (row[key] !== null && unit ? ` ${unit}` : "");
+    cells.get(key).textContent = shownText(row[key]) + (row[key] !== null && unit ? ` ${unit}` : "");
   }
   pausing = setTimeout(() => {
     pausing = null;
@@ -215,14 +215,9 @@ function short(value) {
   return Number(value.toPrecision(6));
 }
 
-function text(value, digits) {
-  if (value === null) return "–";
-  if (typeof value !== "number") return value;
-  if (Math.abs(value) < ROUNDING) return "0";
-  const small = Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6;
-  const written = Number.isInteger(value) ? String(value)
-    : small ? value.toExponential(digits - 1) : value.toPrecision(digits);
-  return written.replaceAll("-", "−");
+// A cell as it is written, rounding as 0.
+function shownText(value) {
+  return typeof value === "number" && Math.abs(value) < ROUNDING ? "0" : text(value, 6);
 }
 
 for (const what of ["kick", "other", "begin", "save"]) {

@@ -30,7 +30,6 @@ def bend_error(row: Row) -> float:
     not known it is taken for that of a bare circle. Of an unstable film the lowest is
     negative and another may be nearer to zero: then the error is understated.
     """
-    stiffness = row.lowest_eigenvalue
     lowest = row.lowest_eigenvalue
     stiffness = SOFTEST_BENDING if lowest is None else abs(lowest)
     sigma, mean_square = abs(row.sigma_hat), abs(row.bending_energy)

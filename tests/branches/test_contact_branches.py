@@ -31,15 +31,6 @@ DIAMETER = 0.05
 CONTROL = StepControl((1500.0, 7000.0), unit=7000.0, first_step=0.02, largest_step=0.04)
 
 
-@cache
-def fan(edges: int) -> Disk:
-    """A disk of triangles about its middle: of a film in its plane only the loop counts."""
-    turns, k = 2 * np.pi * np.arange(edges) / edges, np.arange(edges)
-    ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    triangles = np.stack([0 * k, 1 + k, 1 + (k + 1) % edges], axis=1)
-    return shapes.mesh_of(np.concatenate([np.zeros((1, 2)), ring]), triangles)
-
-
 def lobes(mesh: Disk, load: float, shift: float, in_plane: bool = True) -> BranchPoint:
     """Two lobes that do not touch, the mesh shifted along them by parts of an edge."""
     tied = Problem(mesh).tied_film()
@@ -67,7 +58,7 @@ def places(
 def loaded(edges: int, shift: float, until: float) -> list[Place]:
     """The branch of two lobes, from free ones to those along a line."""
     found = []
-    for place in places(lobes(fan(edges), 1850.0, shift), 200):
+    for place in places(lobes(shapes.fan(edges), 1850.0, shift), 200):
         found.append(place)
         if place.point.value > until:
             return found
@@ -114,7 +105,7 @@ def test_nothing_pulls_or_overlaps_and_forces_balance() -> None:
 def test_a_descent_comes_to_the_same_film() -> None:
     """In one point of contact, from the point before it."""
     points = [place.point for place in QUICK() if len(forces(place.point)) == 1]
-    problem = Problem(fan(24), "area", in_plane=True, diameter=DIAMETER)
+    problem = Problem(shapes.fan(24), "area", in_plane=True, diameter=DIAMETER)
     found = solve(problem, points[2].value, equilibrium(points[1]))
     assert found.residual < 1e-9
     assert found.n_unstable == 0

@@ -16,7 +16,7 @@ from eulerplateau.cli.plot import plot
 from eulerplateau.errors import OutputError
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.comparison import WHAT
-from tests.helpers.plotted_runs import loads, record, row_at
+from tests.helpers.plotted_runs import record, row_at, swept
 from tests.helpers.shapes import disk_points, mesh_of
 
 
@@ -27,8 +27,7 @@ def mesh() -> Disk:
 
 @pytest.fixture(scope="module")
 def sweep(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
-    rows = [row_at(step, load) for step, load in enumerate(loads())]
-    return record(tmp_path_factory.mktemp("runs") / "long", mesh, rows)
+    return record(tmp_path_factory.mktemp("runs") / "long", mesh, swept())
 
 
 def run_cli(*arguments: object) -> int | BaseException | None:

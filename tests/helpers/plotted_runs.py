@@ -49,6 +49,11 @@ def loads(onset: float = ONSET) -> list[float]:
     return [1.0, 300.0, 0.99 * onset, 0.999 * onset, *above, 1.2 * onset]
 
 
+def swept(onset: float = ONSET) -> list[Row]:
+    """The rows of a sweep over those loads."""
+    return [row_at(step, load, onset) for step, load in enumerate(loads(onset))]
+
+
 def record(
     path: Path,
     mesh: Disk,

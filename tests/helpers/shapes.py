@@ -108,6 +108,15 @@ def mesh_of(points: FloatArray, triangles: IntArray) -> Disk:
     return Disk.from_triangles(flat(points) if points.shape[1] == 2 else points, triangles)
 
 
+@cache
+def fan(edges: int) -> Disk:
+    """A disk of triangles about its middle: of a film in its plane only the loop counts."""
+    turns, k = 2 * np.pi * np.arange(edges) / edges, np.arange(edges)
+    ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    triangles = np.stack([0 * k, 1 + k, 1 + (k + 1) % edges], axis=1)
+    return mesh_of(np.concatenate([np.zeros((1, 2)), ring]), triangles)
+
+
 def crumpled(mesh: Disk, size: float) -> FloatArray:
     """Rest positions of `mesh` plus seeded normal noise of standard deviation `size`."""
     return mesh.x + size * np.random.default_rng(5).standard_normal(mesh.x.shape)

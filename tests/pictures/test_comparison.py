@@ -32,7 +32,7 @@ from eulerplateau.pictures.figure import save
 from eulerplateau.pictures.onset import fit_onset
 from eulerplateau.runs.record import read_runs
 from eulerplateau.solvers.equilibrium import Status
-from tests.helpers.plotted_runs import ONSET, loads, pitchfork, record, row_at
+from tests.helpers.plotted_runs import ONSET, pitchfork, record, row_at, swept
 from tests.helpers.shapes import disk_points, mesh_of
 
 # Of contact tests/runs/test_contact_runs.py has a run.
@@ -66,15 +66,13 @@ def mesh() -> Disk:
 
 @pytest.fixture(scope="module")
 def sweep(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
-    rows = [row_at(step, load) for step, load in enumerate(loads())]
-    return record(tmp_path_factory.mktemp("runs") / "long", mesh, rows)
+    return record(tmp_path_factory.mktemp("runs") / "long", mesh, swept())
 
 
 @pytest.fixture(scope="module")
 def other(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
-    rows = [row_at(step, load, 850.0) for step, load in enumerate(loads(850.0))]
     folder = tmp_path_factory.mktemp("runs") / "round"
-    return record(folder, mesh, rows, vertices=2000, solver="cg")
+    return record(folder, mesh, swept(850.0), vertices=2000, solver="cg")
 
 
 def panels(figure: Figure) -> list[Axes]:

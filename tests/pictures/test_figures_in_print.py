@@ -27,7 +27,7 @@ from eulerplateau.pictures.portraits import at_most
 from eulerplateau.pictures.sweep_diagram import diagram_figure
 from eulerplateau.runs.noise import bend_error
 from eulerplateau.runs.record import Run, read_runs
-from tests.helpers.plotted_runs import loads, record, row_at
+from tests.helpers.plotted_runs import record, row_at, swept
 from tests.helpers.shapes import disk_points, mesh_of
 from tests.pictures.test_branch_diagram import KINDS, diagram, point
 
@@ -44,8 +44,7 @@ def mesh() -> Disk:
 
 @pytest.fixture(scope="module")
 def sweep(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
-    rows = [row_at(step, load) for step, load in enumerate(loads())]
-    return record(tmp_path_factory.mktemp("runs") / "sweep", mesh, rows)
+    return record(tmp_path_factory.mktemp("runs") / "sweep", mesh, swept())
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,16 @@ function decode(text, Type) {
   return new Type(bytes.buffer);
 }
 
+// A cell as it is written, a number with so many digits.
+function text(value, digits) {
+  if (value === null) return "–";
+  if (typeof value !== "number") return value;
+  const small = Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6;
+  const written = Number.isInteger(value) ? String(value)
+    : small ? value.toExponential(digits - 1) : value.toPrecision(digits);
+  return written.replaceAll("-", "−");
+}
+
 function readGallery(element) {
   const gallery = JSON.parse(element.textContent);
   element.remove();

@@ -44,15 +44,6 @@ function normal() {
   return shown.curve.run.normals[shown.place];
 }
 
-function text(value, digits) {
-  if (value === null) return "–";
-  if (typeof value !== "number") return value;
-  const small = Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6;
-  const written = Number.isInteger(value) ? String(value)
-    : small ? value.toExponential(digits - 1) : value.toPrecision(digits);
-  return written.replaceAll("-", "−");
-}
-
 function line(label, value, unit) {
   const [pair, name, number] = ["div", "dt", "dd"].map((tag) => document.createElement(tag));
   name.textContent = label;

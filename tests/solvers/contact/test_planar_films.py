@@ -37,15 +37,6 @@ LINES_OF_THREE = (3, 60000.0, 0.02)
 LINE = [(2, 6000.0, 0.05), (2, 7000.0, 0.02), (2, 8000.0, 0.005)]
 
 
-@cache
-def fan(edges: int) -> Disk:
-    """A disk of triangles about its middle: of a film in its plane only the loop counts."""
-    turns, k = 2 * np.pi * np.arange(edges) / edges, np.arange(edges)
-    ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    triangles = np.stack([0 * k, 1 + k, 1 + (k + 1) % edges], axis=1)
-    return shapes.mesh_of(np.concatenate([np.zeros((1, 2)), ring]), triangles)
-
-
 def placed(film: PlanarFilm, mesh: Disk, shift: float = 0.0) -> FloatArray:
     """The fan with its loop on an exact film, off its tip by so many edges."""
     x = np.zeros_like(mesh.x)
@@ -56,7 +47,7 @@ def placed(film: PlanarFilm, mesh: Disk, shift: float = 0.0) -> FloatArray:
 @cache
 def relaxed(film: tuple[int, float, float], edges: int, shift: float = 0.0) -> Equilibrium:
     """The polygon that an exact film relaxes to."""
-    mesh, (lobes, load, diameter) = fan(edges), film
+    mesh, (lobes, load, diameter) = shapes.fan(edges), film
     problem = Problem(mesh, "area", in_plane=True, diameter=diameter)
     start = placed(film_at(lobes, load, diameter), mesh, shift)
     found = solve(problem, load, start)
@@ -86,7 +77,7 @@ def length_of_line(found: Equilibrium) -> float:
 
 def held_along_lines(edges: int) -> tuple[TangentModel, float]:
     """Three lobes whose strands are held where the exact film's touch; their energy."""
-    mesh, (lobes, load, diameter) = fan(edges), LINES_OF_THREE
+    mesh, (lobes, load, diameter) = shapes.fan(edges), LINES_OF_THREE
     film = film_at(*LINES_OF_THREE)
     problem = Problem(mesh, "area", in_plane=True, diameter=diameter)
     place, (first, last) = np.arange(edges) / edges, film.half_lobe.ends[1:3]
@@ -191,7 +182,7 @@ def test_slopes_of_the_energy_are_force_and_area(film: tuple[int, float, float])
     found = relaxed(film, 84)
 
     def energy(load: float, diameter: float) -> float:
-        problem = Problem(fan(84), "area", in_plane=True, diameter=diameter)
+        problem = Problem(shapes.fan(84), "area", in_plane=True, diameter=diameter)
         return solve(problem, load, found).energy
 
     h = 2e-3 * diameter
@@ -232,7 +223,7 @@ def test_where_on_its_edges_a_loop_touches_itself_makes_little_difference(
 def test_a_sweep_in_the_plane_passes_an_onset_of_contact_and_comes_back(
     loads: list[float],
 ) -> None:
-    diameter, mesh = 0.02, fan(84)
+    diameter, mesh = 0.02, shapes.fan(84)
     limits = thresholds(2, diameter)
     problem = Problem(mesh, "area", in_plane=True, diameter=diameter)
     start = placed(film_at(2, loads[0], diameter), mesh)

@@ -15,12 +15,17 @@ let tiles = null;
 let normal = null; // of the plane next to the film
 let asked = 0; // numbers what is asked
 const askedAt = new Map(); // when a slider asked
+const lastAsked = new Map(); // the number of what each slider asked for last, by its key
 let held = null; // the key of the slider that is held
 let socket = null;
 const cells = new Map(); // of the numbers, by their keys
 let last = null; // the row that is to be shown
 let pausing = null; // until numbers are shown again
 const PAUSE = 100; // milliseconds
+let inSoftware = false; // no graphics card draws
+let settling = null; // until the film is drawn finely
+// So long after the last film; and pixels each way while films come, of those there are.
+const SETTLING = 300, COARSE = 0.5;
 
 function connect() {
   socket = new WebSocket(new URL("talk", location.href.replace(/^http/, "ws")));
@@ -56,8 +61,8 @@ function open(told) {
   find("varied").replaceChildren(...about.varied.map(slider));
   diagram = new VisitedDiagram(find("chart"), about.varied);
   try {
-    const antialias = !drawsInSoftware();
-    film = new Film(find("film"), { ...about, radius: 0, antialias }, makeScale);
+    inSoftware = drawsInSoftware();
+    film = new Film(find("film"), { ...about, radius: 0, antialias: !inSoftware }, makeScale);
   } catch {
     find("scale").hidden = true;
     find("no-webgl").hidden = false;
@@ -69,7 +74,7 @@ function makeScale() {
   if (film && normal) film.tellScale(find, "L", normal);
 }
 
-// Whether there is no graphics card: smooth edges then take most of the time.
+// Whether there is no graphics card: smooth edges and many pixels then take most of the time.
 function drawsInSoftware() {
   const gl = document.createElement("canvas").getContext("webgl2");
   const names = gl?.getExtension("WEBGL_debug_renderer_info");
@@ -91,6 +96,7 @@ function slider({ key, symbol, unit, low, high }) {
   number.setAttribute("aria-label", `${symbol}, to type`);
   const follow = (value) => {
     askedAt.set(asked + 1, performance.now());
+    lastAsked.set(key, asked + 1);
     send({ follow: { [key]: value } });
   };
   range.addEventListener("input", () => {
@@ -119,14 +125,15 @@ function show(told) {
   });
 }
 
-function showPoints({ points, asker }) {
+function showPoints({ points, answered }) {
   const point = points.at(-1);
   if (!quantities.length) chooseQuantities(point.row);
   diagram.add(points);
   for (const { key, symbol, unit } of about.varied) {
     const value = point.values[key];
-    const mine = asker[0] === about.page && held === key;
-    if (!mine) {
+    // Who has asked for another value sees that one until it is answered.
+    const ahead = held === key || (lastAsked.get(key) ?? 0) > answered;
+    if (!ahead) {
       find(`range-${key}`).value = value;
       if (document.activeElement !== find(`number-${key}`)) {
         find(`number-${key}`).value = short(value);
@@ -163,13 +170,25 @@ function drawFilm(told) {
   const { x, marks, radius } = told.shape;
   normal = told.shape.normal;
   const positions = Float32Array.from(decode(x, Int16Array), (value) => value * about.unit);
+  if (inSoftware) drawCoarsely();
   film?.show(mesh, tiles, positions, marks && decode(marks, Int8Array), radius);
   document.body.dataset.drawn = told.points.at(-1).number;
-  const [page, number] = told.asker;
-  if (page !== about.page || !askedAt.has(number)) return;
-  latencies.push(performance.now() - askedAt.get(number));
+  const { answered } = told;
+  if (!askedAt.has(answered)) return;
+  latencies.push(performance.now() - askedAt.get(answered));
   if (latencies.length > KEPT) latencies.shift();
-  for (const before of askedAt.keys()) if (before <= number) askedAt.delete(before);
+  for (const before of askedAt.keys()) if (before <= answered) askedAt.delete(before);
+}
+
+// While one film comes after another; the last is drawn finely when no more come.
+function drawCoarsely() {
+  if (settling) film?.setDetail(COARSE);
+  clearTimeout(settling);
+  settling = setTimeout(() => {
+    settling = null;
+    film?.setDetail(1);
+    film?.draw();
+  }, SETTLING);
 }
 
 function chooseQuantities(row) {

@@ -43,13 +43,14 @@ class Pages:
         self._triangles, self._tiling = first.shape.triangles, 0
         self._loop_shape = first.shape
         self.seen_last: float | None = None
-        self._take(first, (0, 0))
+        self._take(first)
 
     def tell(self, done: Done) -> None:
         """Let all pages know what the film has come to."""
         if done.found is not None:
-            self._take(done.found, done.asker)
+            self._take(done.found)
         for page in self._pages.values():
+            page.answered = done.answered.get(page.number, page.answered)
             if done.said:
                 page.said.append(done.said)
             page.news.set()
@@ -59,7 +60,7 @@ class Pages:
         number = next(self._page_numbers)
         page = self._pages[number] = _Page(number)
         self.seen_last = None
-        first = opening(self._name, self._varied, self._loop_shape) | {"page": number}
+        first = opening(self._name, self._varied, self._loop_shape)
         teller = asyncio.create_task(self._keep_telling(page, socket, first))
         try:
             async for message in socket:
@@ -76,21 +77,20 @@ class Pages:
                 self.seen_last = time.monotonic()
 
     def _heed(self, page: _Page, asked: dict[str, Any], worker: Worker) -> None:
-        asker = page.number, int(asked.get("asked", 0))
         if "follow" in asked:
-            worker.follow(asked["follow"], asker)
+            worker.follow(asked["follow"], page.number, asked["asked"])
         elif "click" in asked:
-            worker.click(asked["click"], asker)
+            worker.click(asked["click"], page.number, asked["asked"])
         else:
             page.drawn = True
             page.news.set()
 
-    def _take(self, found: Visited, asker: tuple[int, int]) -> None:
+    def _take(self, found: Visited) -> None:
         if not np.array_equal(found.shape.triangles, self._triangles):
             self._triangles, self._tiling = found.shape.triangles, self._tiling + 1
         point = point_told(next(self._numbers), found)
         self._points.append(point)
-        self._shown = {"shape": self._stage.shape(found), "asker": asker}
+        self._shape = self._stage.shape(found)
 
     async def _keep_telling(
         self, page: _Page, socket: web.WebSocketResponse, first: dict[str, Any]
@@ -112,7 +112,7 @@ class Pages:
         new = self._points[-1]["number"] - page.told
         if new > 0:
             points = list(self._points)[-min(new, len(self._points)) :]
-            told |= {"points": points, **self._shown}
+            told |= {"points": points, "shape": self._shape, "answered": page.answered}
             page.told = self._points[-1]["number"]
             if page.tiling != self._tiling:
                 page.tiling = self._tiling
@@ -128,6 +128,7 @@ class _Page:
     drawn : bool, whether it has drawn all it was told
     told : int, the number of the last point it was told
     tiling : int, the number of the triangles it has
+    answered : int, the number of the last wish of its own that was carried out
     said : lines for people that it was not told yet
     """
 
@@ -138,6 +139,7 @@ class _Page:
         self.drawn = True
         self.told = 0
         self.tiling = -1
+        self.answered = 0
         self.said: deque[str] = deque(maxlen=_SAID)
 
 

@@ -15,7 +15,8 @@ from eulerplateau.runs import Visited
 # Clicks that may wait; more are a page gone mad.
 _WAITING = 8
 
-Asker = tuple[int, int]
+# {page: the number it gave to the last that it asked for}.
+Askers = Mapping[int, int]
 
 
 class Film(Protocol):
@@ -41,12 +42,12 @@ class Done:
     Attributes
     ----------
     found : None if there is nothing new
-    asker : the page that asked, and the number it gave to that
+    answered : pages, and of each the last wish that this answers
     said : str, a line for people; or empty
     """
 
     found: Visited | None
-    asker: Asker
+    answered: Askers
     said: str = ""
 
 
@@ -61,8 +62,8 @@ class Worker:
         self._film, self._save = film, save
         self._wishes = threading.Condition()
         self._values: dict[str, float] = {}
-        self._last_asker: Asker = (0, 0)
-        self._clicks: deque[tuple[str, Asker]] = deque()
+        self._askers: dict[int, int] = {}
+        self._clicks: deque[tuple[str, Askers]] = deque()
         self._ended = False
         self.failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name="live film", daemon=True)
@@ -72,18 +73,18 @@ class Worker:
         self._tell = tell
         self._thread.start()
 
-    def follow(self, values: Mapping[str, float], asker: Asker) -> None:
+    def follow(self, values: Mapping[str, float], page: int, asked: int) -> None:
         """Ask for the film at other values, in place of those that wait."""
         with self._wishes:
             self._values |= values
-            self._last_asker = asker
+            self._askers[page] = asked
             self._wishes.notify()
 
-    def click(self, what: str, asker: Asker) -> None:
+    def click(self, what: str, page: int, asked: int) -> None:
         """Ask for "kick", "other", "begin" or "save", after what was asked for before."""
         with self._wishes:
             if len(self._clicks) < _WAITING:
-                self._clicks.append((what, asker))
+                self._clicks.append((what, {page: asked}))
                 self._wishes.notify()
 
     def stop(self, patience: float) -> None:
@@ -103,31 +104,32 @@ class Worker:
         except BaseException as error:
             self.failure = error
 
-    def _next(self) -> tuple[str, dict[str, float], Asker] | None:
+    def _next(self) -> tuple[str, dict[str, float], Askers] | None:
         with self._wishes:
             self._wishes.wait_for(lambda: self._ended or self._values or self._clicks)
             if self._ended:
                 return None
             if self._values:
                 values, self._values = self._values, {}
-                return "follow", values, self._last_asker
-            what, asker = self._clicks.popleft()
-            return what, {}, asker
+                askers, self._askers = self._askers, {}
+                return "follow", values, askers
+            what, clicker = self._clicks.popleft()
+            return what, {}, clicker
 
-    def _carried_out(self, what: str, values: dict[str, float], asker: Asker) -> Done:
+    def _carried_out(self, what: str, values: dict[str, float], askers: Askers) -> Done:
         try:
             match what:
                 case "follow":
-                    return Done(self._film.follow(values), asker)
+                    return Done(self._film.follow(values), askers)
                 case "kick":
-                    return Done(self._film.kick(), asker)
+                    return Done(self._film.kick(), askers)
                 case "begin":
-                    return Done(self._film.begin(), asker)
+                    return Done(self._film.begin(), askers)
                 case "save":
-                    return Done(None, asker, self._save())
+                    return Done(None, askers, self._save())
                 case _:
                     found = self._film.other()
                     said = "" if found else "No other stable state was come to from here."
-                    return Done(found, asker, said)
+                    return Done(found, askers, said)
         except EulerPlateauError as error:
-            return Done(None, asker, str(error))
+            return Done(None, askers, str(error))

@@ -111,7 +111,7 @@ def settle(page: Browser) -> None:
                 - document.getElementById("range-link").value) < 1e-9)(diagram)"""
         )
         last = page.evaluate("diagram.points.at(-1).number")
-        drawn = int(data(page, "drawn")) >= last
+        drawn = int(data(page, "drawn")) >= last and page.evaluate("settling === null")
         return bool(there) and drawn and data(page, "number") == before
 
     page.wait_for(is_still)
@@ -137,6 +137,37 @@ def test_dragging_changes_the_film_and_its_numbers(page: Browser, live: Live) ->
     # A ring jumps to an eight on the way (Michell 1889), and is drawn as having done so.
     assert page.evaluate("diagram.points.filter(({ jumped }) => jumped).length") == 1
     assert page.evaluate("diagram.jumps.data.length") == 3
+
+
+def test_a_slider_that_is_let_go_stays_where_it_was_put(page: Browser) -> None:
+    page.evaluate(
+        """((range) => {
+            window.stood = [];
+            range.addEventListener("pointerup", () => {
+                setInterval(() => window.stood.push(range.value), 1);
+            });
+        })(document.getElementById("range-link"))"""
+    )
+    drag(page, 0.6)
+    settle(page)
+    stood = [float(value) for value in page.evaluate("window.stood")]
+    assert np.ptp(stood) < 1e-6  # what a film's value is rounded to
+
+
+def test_where_no_graphics_card_draws_the_last_film_is_drawn_finely(page: Browser) -> None:
+    width = page.evaluate("find('film').width")
+    page.evaluate(
+        """((film) => {
+            window.widths = [];
+            const draw = film.draw.bind(film);
+            film.draw = () => { draw(); window.widths.push(film.canvas.width); };
+        })(film)"""
+    )
+    drag(page, 0.3)
+    settle(page)
+    widths = page.evaluate("window.widths")
+    assert min(widths) <= 0.5 * width
+    assert widths[-1] == page.evaluate("find('film').width") == width
 
 
 def test_back_and_forth_shows_hysteresis_and_the_other_state(page: Browser) -> None:

@@ -189,15 +189,15 @@ def test_who_says_what_no_page_would_is_hung_up_on(oval: Disk, said: str) -> Non
 def test_two_pages_share_one_film(oval: Disk) -> None:
     async def act(served: Served) -> None:
         async with served.page() as one, served.page() as two:
-            opened = [await one.told(), await two.told()]
-            assert opened[0]["page"] != opened[1]["page"]
+            for page in (one, two):
+                assert (await page.told())["varied"]
             for page in (one, two):
                 assert len((await page.news())["points"]) == 1
             await one.say(follow={"kL3_alpha": 700.0}, asked=7)
             news = [await one.news(), await two.news()]
             for told in news:
                 assert told["points"][-1]["values"] == {"kL3_alpha": 700.0}
-                assert told["asker"] == [opened[0]["page"], 7]
+            assert [told["answered"] for told in news] == [7, 0]
             assert news[0]["shape"] == news[1]["shape"]
             assert "triangles" not in news[0]  # they are those it has
 

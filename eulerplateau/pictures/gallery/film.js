@@ -40,6 +40,7 @@ class Film {
       new L.BufferGeometry(), new L.MeshPhongMaterial({ color: Film.STRIPE }));
     this.scene.add(...this.parts, this.tube, this.stripe);
     this.far = size; // beyond any film
+    this.detail = 1;
     this.camera.position.fromArray(eye).setLength(this.far);
     this.controls = new L.OrbitControls(this.camera, canvas);
     this.controls.minZoom = 0.5;
@@ -147,8 +148,8 @@ class Film {
   fit() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!width || !height) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
+    this.renderer.setPixelRatio(this.detail * Math.min(window.devicePixelRatio, 2));
     const half = 1.05 * Math.max(
       (this.halfSize[0] + this.largestRadius) / width,
       (this.halfSize[1] + this.largestRadius) / height);
@@ -157,6 +158,13 @@ class Film {
     });
     this.camera.updateProjectionMatrix();
     this.draw();
+  }
+
+  // From the next drawing on, so many pixels each way, of those that there are.
+  setDetail(detail) {
+    if (detail === this.detail) return;
+    this.detail = detail;
+    this.renderer.setPixelRatio(detail * Math.min(window.devicePixelRatio, 2));
   }
 
   draw() {

@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.linalg import LinAlgError
+from scipy.sparse.csgraph import connected_components
 
 from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.loop.gaps import NO_GAPS, Between, Gaps
@@ -180,6 +181,13 @@ class Strands:
             one = gaps[np.arange(len(gaps)) == k]
             kept[k] = self.unlike(one, gaps[kept & before])[0]
         return kept
+
+    def contacts(self, gaps: Gaps) -> list[BoolArray]:
+        """Return which gaps (k,) are places of each of the contacts."""
+        each = np.eye(len(gaps), dtype=bool)
+        beside = [~self.unlike(gaps, gaps[here], ALONG) for here in each]
+        count, number = connected_components(np.array(beside).reshape(len(gaps), -1))
+        return [number == contact for contact in range(count)]
 
     def parting(self, x: FloatArray, gaps: Gaps) -> FloatArray:
         """Return d2D/ds2 (k,) where D is least near each of the places, by s and t."""

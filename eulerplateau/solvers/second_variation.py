@@ -25,7 +25,6 @@ from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.tangent_coordinates import Columns, Coordinates, turned
 from eulerplateau.solvers.tangent_space import balanced, normals, orthonormal
 
-
 # The residual above which tensions that are known otherwise are better than these.
 _BALANCED = 1e-4
 

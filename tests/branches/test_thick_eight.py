@@ -149,7 +149,7 @@ def test_eight_opens_where_the_twisted_film_is_as_wide():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("diameter", [0.03])
+@pytest.mark.parametrize("diameter", [0.03, 0.004])
 def test_strands_push_above_the_opening_load_and_pull_below(diameter):
     """By films in contact, from another load; where their force vanishes is the load."""
     opens, far = opening_load(diameter), touching_at(diameter)

@@ -272,6 +272,7 @@ def _extrapolated(
 
 
 def _between(name: str, first: float, second: float, part: float) -> float:
+    """Return a value on the way, to the last digit that of its ends."""
     if name == "diameter":
         return float(first ** (1 - part) * second**part)
-    return first + part * (second - first)
+    return first * (1 - part) + second * part

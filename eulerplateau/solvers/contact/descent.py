@@ -17,7 +17,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
-from eulerplateau.loop import Gaps, LoopEnergy, Strands, passed, with_gaps_held
+from eulerplateau.loop import Gaps, LoopEnergy, Strands, with_gaps_held
 from eulerplateau.solvers.contact.keeping import CLOSED, Keeping, Touching
 from eulerplateau.solvers.contact.program import Program
 from eulerplateau.solvers.descent import (
@@ -102,7 +102,7 @@ class ContactDescent:
     def _reached(
         self, state: Touching, step: NewtonStep, gaps: Gaps, radius: float
     ) -> Touching | None:
-        """Return the state that a step leads to, closing gaps; None if it is not accepted."""
+        """Return the state that a step leads to, closing gaps; None if not accepted."""
         x = state.model.x
         found = self.keeping.cleared(x, x + step.moved, gaps, state.beside)
         if found is None:

@@ -26,6 +26,7 @@ from eulerplateau.loop import (
     spread,
     with_gaps_held,
 )
+from eulerplateau.solvers.descent import FIRST_RADIUS
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 
 # A gap, in units of L, that is closed, and by which part of the diameter strands may
@@ -39,7 +40,7 @@ _PULLS = 1e-9
 # By which part of the diameter strands may overlap between vertices at which they are held
 # along each other; and how often that is mended, or strands that part are held at points.
 _BETWEEN = 1e-3
-_CHANGES = 4
+_CHANGES = 3
 # Strands touch at a point where they spread so fast from there, d2D/ds2 in 1 / L, and do so
 # until they spread less than that; and than that in their least distance, on the way.
 _POINT, _LINE, _FLAT = 2.0, 1.0, 0.2
@@ -103,9 +104,8 @@ class Keeping:
         cleared = self.cleared(x, x, gaps, beside)
         if cleared is None:
             return None
-        return self._touching(
-            *cleared, laid, state.radius, state.iteration + 1, state.changes + 1
-        )
+        spent = state.iteration + 1, state.changes + 1
+        return self._touching(*cleared, laid, FIRST_RADIUS, *spent)
 
     def _touching(
         self,
@@ -125,6 +125,7 @@ class Keeping:
             # Where they were before: along each other they are nearest anywhere.
             laid = laid.joined(gaps[along])
             gaps = replace(gaps, slides=gaps.slides & ~along)
+            radius = max(radius, FIRST_RADIUS)
         gaps, _ = self.strands.at(x, gaps)
         gaps, tensions = self._pushing(x, gaps[self.strands.distinct(gaps)])
         held = with_gaps_held(self.energy, self.strands, gaps)
@@ -132,16 +133,23 @@ class Keeping:
         return Touching(model, gaps, laid, radius, iteration, changes)
 
     def _pushing(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray | None]:
-        """Return closed gaps whose strands push, the others let go; and tensions (n + k,)."""
-        force, tensions = sum(self.energy.forces(x)), None
+        """Return closed gaps without those whose strands pull, and tensions (n + k,).
+
+        One after another, as the forces of neighbours hang together.
+        """
+        parts = self.energy.forces(x)
+        force = sum(parts[1:], start=parts[0])
         while len(gaps):
             held = HeldGaps(self.energy.constraint, self.strands, gaps)
-            tensions = held.tensions(x, force)
+            try:
+                tensions = held.tensions(x, force)
+            except LinAlgError:
+                break
             forces = -tensions[len(x) :]
             if forces.min() >= -_PULLS * float(np.abs(tensions).max()):
-                break
+                return gaps, tensions
             gaps = gaps[np.arange(len(gaps)) != forces.argmin()]
-        return gaps, tensions if len(gaps) else None
+        return gaps, None
 
     def closed(self, x: FloatArray, gaps: Gaps) -> tuple[FloatArray, Gaps] | None:
         """Return the loop next to x with gaps closed, and them: those that met count once.
@@ -203,20 +211,26 @@ class Keeping:
 
         None if all are so.
         """
-        x, gaps, forces = state.model.x, state.gaps, state.forces
-        slides = gaps.slides.copy()
-        for own in self.strands.contacts(gaps):
-            least = _LINE if gaps.slides[own].all() else _POINT
-            slides[own] = spread(self.strands, x, gaps[own], forces[own]) >= least
-        if (slides == gaps.slides).all():
-            return None
-        kept = replace(gaps, slides=slides)
+        x, gaps = state.model.x, state.gaps
         try:
-            kept, _ = self.strands.at(x, kept)
+            slides = self._at_points(state)
+            points, _ = self.strands.at(x, replace(gaps, slides=slides))
         except LinAlgError:
             return None
-        laid = state.laid[self.strands.unlike(state.laid, kept[kept.slides], ALONG)]
-        return self._changed(state, kept[self.strands.distinct(kept)], laid)
+        if (slides == gaps.slides).all():
+            return None
+        laid = state.laid[self.strands.unlike(state.laid, points[slides], ALONG)]
+        return self._changed(state, points[self.strands.distinct(points)], laid)
+
+    def _at_points(self, state: Touching) -> BoolArray:
+        """Return which gaps (k,) are places of contacts that are points."""
+        gaps, contact = state.gaps, self.strands.contacts(state.gaps)
+        slides = gaps.slides.copy()
+        for own in (contact == number for number in range(int(contact.max()) + 1)):
+            least = _LINE if gaps.slides[own].all() else _POINT
+            spreads = spread(self.strands, state.model.x, gaps[own], state.forces[own])
+            slides[own] = spreads >= least
+        return slides
 
     def _parted(self, state: Touching) -> Touching | None:
         """Return the state with points where strands overlap between two vertices' gaps.

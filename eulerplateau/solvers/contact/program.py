@@ -19,7 +19,6 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
-from scipy.optimize import nnls
 
 from eulerplateau.arrays import BoolArray, FloatArray
 
@@ -77,7 +76,7 @@ class Program:
 
     @cached_property
     def _convex(self) -> tuple[FloatArray, float]:
-        """H, stiffened where gaps are closed if need be, and its least eigenvalue if < 0."""
+        """H, stiffened where gaps are closed if need be; its least eigenvalue, 0 if > 0."""
         hessian = self.hessian
         if _definite(hessian):
             return hessian, 0.0
@@ -95,6 +94,9 @@ class Program:
     def _least(
         self, hessian: FloatArray, shift: float
     ) -> tuple[FloatArray, BoolArray] | None:
+        # Slow to load, and asked for only where a step would let strands overlap.
+        from scipy.optimize import nnls
+
         try:
             factor = cho_factor(hessian + shift * np.eye(len(hessian)))
             free = -cho_solve(factor, self.gradient)

@@ -9,9 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError
-from scipy.sparse.csgraph import connected_components
 
-from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.loop import (
     ALONG,
     NO_GAPS,
@@ -197,7 +196,7 @@ class GapBounds:
     def _kinds(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return by how much each of the contacts (k,) is the point, or the line, it is."""
         held, forces = self._at(x), -tensions[len(x) :]
-        contact = self._contact(held.gaps)
+        contact = self.strands.contacts(held.gaps)
         kinds = np.zeros(len(held.gaps))
         for number in range(int(contact.max(initial=-1)) + 1):
             own = contact == number
@@ -209,17 +208,8 @@ class GapBounds:
         held = self._at(x).gaps
         return np.where(held.slides, self.strands.spreading(x, held) - _FLAT, np.inf)
 
-    def _contact(self, gaps: Gaps) -> IntArray:
-        """Return the number of the contact (k,) of which each gap is a place."""
-        if not len(gaps):
-            return np.zeros(0, dtype=np.int64)
-        each = np.eye(len(gaps), dtype=bool)
-        beside = [~self.strands.unlike(gaps, gaps[here], ALONG) for here in each]
-        number: IntArray = connected_components(np.array(beside))[1].astype(np.int64)
-        return number
-
     def _single(self, gaps: Gaps) -> BoolArray:
         """Return which places (k,) have no other beside them."""
-        contact = self._contact(gaps)
+        contact = self.strands.contacts(gaps)
         single: BoolArray = np.bincount(contact)[contact] == 1
         return single

@@ -96,10 +96,28 @@ class HeldGaps:
                 return None
         return x if error < _SMALL else None
 
+    def tensions(self, x: FloatArray, force: FloatArray) -> FloatArray:
+        """Return the tensions (n + k,) that balance a force (n, d) best in that norm.
+
+        They tell what strands push with, wherever between vertices they touch.
+        """
+        rows = self.jacobian(x)
+        moved = (self.strands.compliance @ force).ravel()
+        moves = self._moves(rows, x.shape)
+        found: FloatArray = -cho_solve(cho_factor(rows @ moves), rows @ moved)
+        return found
+
     def _closing(
         self, rows: FloatArray, excess: FloatArray, shape: tuple[int, int]
     ) -> FloatArray:
         """Return the least displacement (n, d) that changes the equations by so much."""
+        moves = self._moves(rows, shape)
+        shares = cho_solve(cho_factor(rows @ moves), excess)
+        closing: FloatArray = (moves @ shares).reshape(shape)
+        return closing
+
+    def _moves(self, rows: FloatArray, shape: tuple[int, int]) -> FloatArray:
+        """Return the displacements (n d, m) that the equations' rows are dual to."""
         n, d = shape
         by_vertex: FloatArray = np.ascontiguousarray(
             rows.reshape(-1, n, d).transpose(1, 0, 2)
@@ -107,10 +125,7 @@ class HeldGaps:
         moved: FloatArray = (self.strands.compliance @ by_vertex.reshape(n, -1)).reshape(
             by_vertex.shape
         )
-        moved = moved.transpose(0, 2, 1).reshape(n * d, -1)
-        shares = cho_solve(cho_factor(rows @ moved), excess)
-        closing: FloatArray = (moved @ shares).reshape(shape)
-        return closing
+        return moved.transpose(0, 2, 1).reshape(n * d, -1)
 
 
 def with_gaps_held(energy: LoopEnergy, strands: Strands, gaps: Gaps) -> LoopEnergy:

@@ -13,6 +13,8 @@ if they were one, in the middle: positive as long as strands touch at a point on
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
@@ -24,7 +26,7 @@ from eulerplateau.loop.strands import Strands
 def spread(strands: Strands, x: FloatArray, gaps: Gaps, forces: FloatArray) -> float:
     """Return d2D/ds2, in 1/L, in the middle of a contact of a loop (n, d), were it a point.
 
-    gaps : the places of one contact, k of them, all from one strand
+    gaps : the places of one contact, k of them
     forces : (k,) with which strands push each other there
     """
     whole = strands.knots[-1]
@@ -34,6 +36,13 @@ def spread(strands: Strands, x: FloatArray, gaps: Gaps, forces: FloatArray) -> f
     def off(places: FloatArray, from_: FloatArray | float) -> FloatArray:
         apart: FloatArray = (places - from_ + 0.5 * whole) % whole - 0.5 * whole
         return apart
+
+    # All from the strand of the first.
+    first = gaps.s[0]
+    turned = np.abs(off(gaps.t, first)) < np.abs(off(gaps.s, first))
+    gaps = replace(
+        gaps, s=np.where(turned, gaps.t, gaps.s), t=np.where(turned, gaps.s, gaps.t)
+    )
 
     def middle(places: FloatArray) -> float:
         return float(places[0] + shares @ off(places, places[0]))

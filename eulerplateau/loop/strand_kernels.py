@@ -226,7 +226,10 @@ def nearest_pairs(
                 continue
             s, t = s - whole * np.floor(s / whole), t - whole * np.floor(t / whole)
             s, t = min(s, t), max(s, t)
-            if _is_listed(found, count, s, t, whole):
+            # Where the loop begins rounding decides which of two places comes first.
+            if _is_listed(found, count, s, t, whole) or _is_listed(
+                found, count, t, s, whole
+            ):
                 continue
             if count < len(found):
                 found[count, 0], found[count, 1] = s, t

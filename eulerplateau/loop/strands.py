@@ -24,8 +24,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.linalg import LinAlgError
+from scipy.sparse.csgraph import connected_components
 
-from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.loop.gaps import NO_GAPS, Between, Gaps
 from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.strand_kernels import (
@@ -180,6 +181,15 @@ class Strands:
             one = gaps[np.arange(len(gaps)) == k]
             kept[k] = self.unlike(one, gaps[kept & before])[0]
         return kept
+
+    def contacts(self, gaps: Gaps) -> IntArray:
+        """Return the number of the contact (k,) of which each gap is a place."""
+        if not len(gaps):
+            return np.zeros(0, dtype=np.int64)
+        each = np.eye(len(gaps), dtype=bool)
+        beside = [~self.unlike(gaps, gaps[here], ALONG) for here in each]
+        number: IntArray = connected_components(np.array(beside))[1].astype(np.int64)
+        return number
 
     def parting(self, x: FloatArray, gaps: Gaps) -> FloatArray:
         """Return d2D/ds2 (k,) where D is least near each of the places, by s and t."""

@@ -92,18 +92,14 @@ def evenly(knots: FloatArray, gaps: Gaps, forces: FloatArray) -> Gaps | None:
 
 
 def _even(at: FloatArray, push: FloatArray) -> FloatArray | None:
-    """Return where a stretch is held, in edges; None if that is where it is.
-
-    Outward from its ends; places missing from it were let go.
-    """
+    """Return where a stretch is held, in edges; None if that is where it is."""
     if len(at) == 1 or not push.any():
         return None
     middle = float(push @ at / push.sum())
     off = at - middle
     if float(np.abs(off - np.round(off)).max()) <= _EVEN:
         return None
-    first, last = np.floor(off[0] + _EVEN), np.ceil(off[-1] - _EVEN)
-    even: FloatArray = middle + np.arange(first, last + 1)
+    even: FloatArray = middle + np.unique(np.round(off))
     return even
 
 

@@ -13,7 +13,7 @@ unit is alpha / L^4, i.e. 1 for L = alpha = 1.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,9 @@ from eulerplateau.loop import EdgeTurns, LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.tangent_coordinates import Columns, Coordinates, turned
 from eulerplateau.solvers.tangent_space import balanced, normals, orthonormal
+
+# The residual above which tensions that are known otherwise are better than these.
+_BALANCED = 1e-4
 
 
 @dataclass(frozen=True)
@@ -134,23 +137,43 @@ class TangentModel:
         return self.scale[:, None] * moved
 
 
-def tangent_model(energy: LoopEnergy, x: FloatArray) -> TangentModel:
-    """Build the model at loop positions x (n, d) that keep the energy's constraint."""
+def tangent_model(
+    energy: LoopEnergy, x: FloatArray, near: FloatArray | None = None
+) -> TangentModel:
+    """Build the model at loop positions x (n, d) that keep the energy's constraint.
+
+    Tensions are `near`, if they are known and forces do not balance yet.
+    """
     forces = energy.forces(x)
     total = sum(forces[1:], start=forces[0])
     coordinates, tensions, gradient, unbalanced = _tangent_space(energy, x, total)
     forces.append(energy.constraint.force(x, tensions))
     largest = max(float(np.abs(force).max()) for force in forces)
+    residual = float(np.abs(unbalanced).max()) / largest
+    if near is not None and residual > _BALANCED:
+        tensions = near
     return TangentModel(
         x=x,
         weights=energy.weights,
         tensions=tensions,
-        residual=float(np.abs(unbalanced).max()) / largest,
+        residual=residual,
         rounding=energy.rounding * float(np.abs(x).max()) / largest,
         coordinates=coordinates,
         gradient=gradient,
         hessian=coordinates.hessian(energy, x, tensions),
     )
+
+
+def loosened(energy: LoopEnergy, held: LoopEnergy, model: TangentModel) -> TangentModel:
+    """Return a model with less held: by an energy's own constraint, of all of `held`.
+
+    `model` is of `held`, whose constraint has more equations, and whose tensions there are.
+    """
+    x, forces = model.x, energy.forces(model.x)
+    total = sum(forces[1:], start=forces[0])
+    coordinates, _, gradient, _ = _tangent_space(energy, x, total)
+    hessian = coordinates.hessian(held, x, model.tensions)
+    return replace(model, coordinates=coordinates, gradient=gradient, hessian=hessian)
 
 
 def _tangent_space(

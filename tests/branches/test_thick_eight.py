@@ -43,7 +43,7 @@ def touching_at(diameter, load=1700.0, ratio=0.0, link=0.0):
 def next_to(film, **changed):
     """Return the film at other values, in the same basis: Newton's method alone."""
     family = TouchingFamily(film.basis, {**film.values, **changed})
-    found = settled(Touching(family, film.x, film.tensions, 0))
+    found = settled(Touching(family, film.x, film.others, 0))
     assert found is not None
     return found
 
@@ -149,16 +149,24 @@ def test_eight_opens_where_the_twisted_film_is_as_wide():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("diameter", [0.03])
-def test_strands_push_above_the_opening_load_and_pull_below(diameter):
+@pytest.mark.parametrize(
+    ("diameter", "rod"), [(0.03, ()), (0.004, ()), (0.05, ROD), (0.05, (2 / 3, 0.5))]
+)
+def test_strands_push_above_the_opening_load_and_pull_below(diameter, rod):
     """By films in contact, from another load; where their force vanishes is the load."""
-    opens, far = opening_load(diameter), touching_at(diameter)
+    opens, far = opening_load(diameter, *rod), touching_at(diameter, 1700.0, *rod)
     below, above = (
         reached(far, {**far.values, "load": (1 + part) * opens}).force
         for part in (-1e-3, 1e-3)
     )
     assert below < 0 < above
     assert abs(below + above) < 1e-2 * above
+
+
+def test_mirror_images_open_at_one_load_and_a_line_without_turns_nowhere():
+    """Mirror images open at one load; without turns the strands come to lie along."""
+    assert opening_load(0.1, 2 / 3, -1.0) == opening_load(0.1, 2 / 3, 1.0)
+    assert opening_load(0.1, 2 / 3, 0.0) is None
 
 
 @pytest.mark.slow

@@ -8,23 +8,50 @@ would be nearer than their diameter.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from itertools import chain, pairwise
+from typing import Self
 
+import numpy as np
 from scipy.optimize import brentq
 
-from eulerplateau.branches.conformal.contact_eight import (
-    reached,
-    touching,
-)
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.conformal.contact_eight import reached, touching
 from eulerplateau.branches.conformal.films import checked
-from eulerplateau.branches.conformal.touching import Touching, way
+from eulerplateau.branches.conformal.touching import Touching, in_contact, way
 from eulerplateau.exact import checked_diameter
 from eulerplateau.exact.conformal import TWISTED, make_basis, twisted_film
+from eulerplateau.loop import LoopEnergy
 
-# Where the search begins, the loads up to which it goes, and to what part one is found.
+# Where the search begins, the load up to which it goes, and to what part one is found.
 _MIDDLE = 1700.0
-_LOWEST, _HIGHEST = 25.0, 5100.0
+_HIGHEST = 5100.0
 _FOUND = 1e-9
+# Strands that cross by less, in degrees, are about to lie along each other.
+_CLOSED = 20.0
+
+
+@dataclass(frozen=True)
+class Forceless(Touching):
+    """A film whose strands touch without force, at the load at which they do.
+
+    Its `others` are beta and that load.
+    """
+
+    @property
+    def tensions(self) -> FloatArray:
+        """The multipliers (2,) of length and distance, beta and 0."""
+        return np.array([self.others[0], 0.0])
+
+    def with_unknowns(self, x: FloatArray, others: FloatArray) -> Self:
+        """Return the film, or the guess, with other unknowns."""
+        values = {**self.values, "load": float(others[1])}
+        family = replace(self.family, values=values)
+        return replace(self, family=family, x=x, others=others)
+
+    def by_others(self, energy: LoopEnergy, slopes: FloatArray) -> FloatArray:
+        """Return how what does not balance (size, 2) changes with the others."""
+        return np.column_stack([slopes[0], energy.rate("load", self.x)])
 
 
 def opening_load(
@@ -33,22 +60,42 @@ def opening_load(
     """Return sigma_hat at which an eight opens when it is unloaded.
 
     Parameters are those of `thick_eight`. Where twist costs nothing it is the load of the
-    twisted film as wide, in seconds. With twist films in contact are followed, in minutes:
-    None if there is no such load above 25, or below 5100, before Newton's method fails.
-    Raises SpecError for wrong parameters, NoFilmError where no film is found to begin
-    with, and BranchError where harmonics do not resolve the twisted one.
+    twisted film as wide. That is also the one of a rod turned by as many turns as the film
+    writhes, which has no twist; from there films whose strands touch without force are
+    followed in the turns, their load an unknown, in seconds. None where Newton's method
+    finds none on the way, or strands come to lie along each other. Raises SpecError for wrong parameters, and BranchError where
+    harmonics do not resolve the twisted film.
     """
     checked(_MIDDLE, twist_ratio, link)
+    free = twisted_film(diameter)
     if twist_ratio == 0:
-        return twisted_film(diameter).load
-    start = _middle(diameter, twist_ratio, link)
-    return _crossed(start, _LOWEST if start.force > 0 else _HIGHEST, _force)
+        return free.load
+    values = {"load": free.load, "twist_ratio": 0.0, "link": 0.0, "diameter": diameter}
+    film = in_contact(free, values)
+    values |= {
+        "twist_ratio": twist_ratio,
+        "link": film.family.twist(free.load).writhe(film.x),
+    }
+    family = replace(film.family, values=values)
+    others = np.array([film.others[0], free.load])
+    start = Forceless(family, film.x, others, film.corrections)
+    for found in way(start, {**values, "link": abs(link)}):
+        if found.values["link"] == abs(link):
+            return found.values["load"]
+        if found.crossing.angle < _CLOSED:
+            break
+    return None
 
 
 def splitting_load(
     diameter: float, twist_ratio: float = 0.0, link: float = 0.0
 ) -> float | None:
-    """Return sigma_hat beyond which one point of contact is not enough, as above."""
+    """Return sigma_hat beyond which one point of contact is not enough.
+
+    Parameters are those of `thick_eight`. Films in contact are followed, in minutes: None
+    if there is no such load below 5100, before Newton's method fails. Raises SpecError for
+    wrong parameters, NoFilmError where no film is found to begin with.
+    """
     return _crossed(_middle(diameter, twist_ratio, link), _HIGHEST, _convexity)
 
 
@@ -76,10 +123,6 @@ def _crossed(
 
     low, high = sorted(film.values["load"] for film in near)
     return float(brentq(at, low, high, rtol=_FOUND))
-
-
-def _force(film: Touching) -> float:
-    return film.force
 
 
 def _convexity(film: Touching) -> float:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Self, TypeVar
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -107,13 +108,13 @@ class Touching:
     Attributes
     ----------
     x : (size, 1) float, what stands for the loop
-    tensions : (2,) float, beta and -F
+    others : (2,) float, what is unknown besides: beta and -F
     corrections : int, of Newton's method
     """
 
     family: TouchingFamily
     x: FloatArray
-    tensions: FloatArray
+    others: FloatArray
     corrections: int
 
     @property
@@ -130,6 +131,22 @@ class Touching:
     def force(self) -> float:
         """The force of contact F = dE/dd, in alpha / L^2; negative if strands pull."""
         return -float(self.tensions[1])
+
+    @property
+    def tensions(self) -> FloatArray:
+        """The multipliers (2,) of length and distance, beta and -F."""
+        return self.others
+
+    def with_unknowns(self, x: FloatArray, others: FloatArray) -> Self:
+        """Return the film, or the guess, with other unknowns."""
+        return replace(self, x=x, others=others)
+
+    def by_others(self, energy: LoopEnergy, slopes: FloatArray) -> FloatArray:
+        """Return how what does not balance (size, 2) changes with the others.
+
+        slopes : (2, size) float, the constraint's
+        """
+        return slopes.T
 
     @property
     def crossing(self) -> Crossing:
@@ -162,11 +179,14 @@ class Touching:
         """The film as a point of a branch in the load."""
         return first_point(self.family, self.x, self.values["load"], CONTROL)
 
-    def in_basis(self, basis: Basis) -> Touching | None:
+    def in_basis(self, basis: Basis) -> Self | None:
         """Return the same film in another basis; None if Newton's method fails."""
         family = replace(self.family, basis=basis)
         x = family.transferred(self.family, self.x)
         return settled(replace(self, family=family, x=x))
+
+
+_Film = TypeVar("_Film", bound=Touching)
 
 
 def in_contact(film: ConformalFilm, values: Mapping[str, float]) -> Touching:
@@ -176,26 +196,26 @@ def in_contact(film: ConformalFilm, values: Mapping[str, float]) -> Touching:
     return _regraded(Touching(family, x, tensions, 0))
 
 
-def settled(guess: Touching) -> Touching | None:
+def settled(guess: _Film) -> _Film | None:
     """Return the film near a guess by Newton's method; None if that fails.
 
     The force is an unknown too, so that a guess may have any distance of its strands.
     """
-    family, x, tensions = guess.family, guess.x, guess.tensions
-    load, best = guess.values["load"], math.inf
-    energy, held, n = family.energy(load), family.held(load), len(x)
+    best, n = math.inf, len(guess.x)
     for corrections in range(_STEPS):
+        family, x, load = guess.family, guess.x, guess.values["load"]
+        energy, held = family.energy(load), family.held(load)
         forces, slopes = energy.forces(x), held.jacobian(x)
-        unbalanced = sum(forces, start=slopes.T @ tensions[:, None])
+        unbalanced = sum(forces, start=slopes.T @ guess.tensions[:, None])
         misfit = held.misfit(x)
         largest = max(float(np.abs(force).max()) for force in forces)
         residual = max(float(np.abs(unbalanced).max()) / largest, *np.abs(misfit))
         if residual < _SETTLED or 0.5 * best < residual < _STUCK:
-            return Touching(family, x, tensions, corrections)
+            return replace(guess, corrections=corrections)
         best = min(best, residual)
         matrix = np.zeros((n + 2, n + 2))
-        matrix[:n, :n] = energy.lagrangian_hessian(x, tensions)
-        matrix[:n, n:], matrix[n:, :n] = slopes.T, slopes
+        matrix[:n, :n] = energy.lagrangian_hessian(x, guess.tensions)
+        matrix[:n, n:], matrix[n:, :n] = guess.by_others(energy, slopes), slopes
         try:
             step = np.linalg.solve(matrix, -np.append(unbalanced, misfit))
         except LinAlgError:
@@ -203,14 +223,12 @@ def settled(guess: Touching) -> Touching | None:
         size = float(family.basis.wavenumbers @ np.abs(family.unknowns.scale * step[:n]))
         if not np.isfinite(size):
             return None
-        short = min(1.0, _TRUST / (size + 1e-300))
-        x, tensions = x + short * step[:n, None], tensions + short * step[n:]
+        step *= min(1.0, _TRUST / (size + 1e-300))
+        guess = guess.with_unknowns(x + step[:n, None], guess.others + step[n:])
     return None
 
 
-def way(
-    start: Touching, wanted: Mapping[str, float], step: float = FIRST
-) -> Iterator[Touching]:
+def way(start: _Film, wanted: Mapping[str, float], step: float = FIRST) -> Iterator[_Film]:
     """Yield the films on the way to other values, until those or until none is found.
 
     The way there is straight in the values, and in the logarithm of the diameter. The grid
@@ -243,7 +261,7 @@ def crowding(diameter: float, angle: float) -> float:
     return float(_CROWDING * (diameter / _WIDE) ** (180 / angle))
 
 
-def _finer(film: Touching) -> Touching | None:
+def _finer(film: _Film) -> _Film | None:
     """Return the film by more harmonics, if it may have more."""
     harmonics = 4 * film.basis.harmonics // 3
     if harmonics > _MOST_ON_THE_WAY:
@@ -251,7 +269,7 @@ def _finer(film: Touching) -> Touching | None:
     return film.in_basis(make_basis(harmonics, TWISTED, film.basis.crowding))
 
 
-def _regraded(film: Touching) -> Touching:
+def _regraded(film: _Film) -> _Film:
     """Return the film on the grid of its own angle, on which all others are."""
     wanted = crowding(film.values["diameter"], film.crossing.angle)
     if abs(wanted / film.basis.crowding - 1) < _SAME_GRID:
@@ -260,18 +278,20 @@ def _regraded(film: Touching) -> Touching:
 
 
 def _extrapolated(
-    film: Touching, before: Touching, far: float, values: Mapping[str, float]
-) -> Touching:
+    film: _Film, before: _Film, far: float, values: Mapping[str, float]
+) -> _Film:
     """Return a guess at values as far beyond `film`, per step there from `before`."""
     angle, past = film.crossing.angle, before.crossing.angle
     ahead = max(angle + far * (angle - past), 0.5 * angle)
     basis = make_basis(film.basis.harmonics, TWISTED, crowding(values["diameter"], ahead))
     x = film.x + far * (film.x - before.x)
-    tensions = film.tensions + far * (film.tensions - before.tensions)
-    return Touching(TouchingFamily(basis, values), x, tensions, 0)
+    others = film.others + far * (film.others - before.others)
+    guess = replace(film, family=TouchingFamily(basis, values))
+    return guess.with_unknowns(x, others)
 
 
 def _between(name: str, first: float, second: float, part: float) -> float:
+    """Return a value on the way, to the last digit that of its ends."""
     if name == "diameter":
         return float(first ** (1 - part) * second**part)
-    return first + part * (second - first)
+    return first * (1 - part) + second * part

@@ -15,23 +15,35 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.loop import (
     ALONG,
+    NEGATIVE,
     NO_GAPS,
     Gaps,
+    HeldGaps,
     LoopEnergy,
     Strands,
     evenly,
+    passed,
+    spread,
     with_gaps_held,
 )
+from eulerplateau.solvers.descent import FIRST_RADIUS
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 
-# The residual below which it is asked whether strands pull, and what counts as pulling:
-# so much of the largest tension, and what an unbalanced force would account for.
-_ASKED = 1e-3
+# A gap, in units of L, that is closed, and by which part of the diameter strands may
+# overlap before they are pushed back.
+CLOSED = 1e-10
+_DEEP = 0.25
+# Rounds in which gaps are closed that the closing of others has made negative.
+_ROUNDS = 6
+# What counts as pulling, of the largest tension.
 _PULLS = 1e-9
 # By which part of the diameter strands may overlap between vertices at which they are held
 # along each other; and how often that is mended, or strands that part are held at points.
 _BETWEEN = 1e-3
-_CHANGES = 8
+_CHANGES = 3
+# Strands touch at a point where they spread so fast from there, d2D/ds2 in 1 / L, and do so
+# until they spread less than that; and than that in their least distance, on the way.
+_POINT, _LINE, _FLAT = 2.0, 1.0, 0.2
 
 
 @dataclass(frozen=True)
@@ -87,12 +99,13 @@ class Keeping:
 
     def _changed(self, state: Touching, gaps: Gaps, laid: Gaps) -> Touching | None:
         """Return the state with other gaps closed in place of its own, if they can be."""
-        closed = self.closed(state.model.x, gaps)
-        if closed is None:
+        x = state.model.x
+        beside = laid.joined(gaps[~gaps.slides])
+        cleared = self.cleared(x, x, gaps, beside)
+        if cleared is None:
             return None
-        return self._touching(
-            *closed, laid, state.radius, state.iteration + 1, state.changes + 1
-        )
+        spent = state.iteration + 1, state.changes + 1
+        return self._touching(*cleared, laid, FIRST_RADIUS, *spent)
 
     def _touching(
         self,
@@ -107,15 +120,36 @@ class Keeping:
 
         Strands that come to lie along each other are held there, and touch at no point.
         """
-        along = self.strands.laid_along(x, gaps)
+        along = gaps.slides & (self.strands.parting(x, gaps) < _FLAT)
         if along.any():
             # Where they were before: along each other they are nearest anywhere.
             laid = laid.joined(gaps[along])
             gaps = replace(gaps, slides=gaps.slides & ~along)
+            radius = max(radius, FIRST_RADIUS)
         gaps, _ = self.strands.at(x, gaps)
-        gaps = gaps[self.strands.distinct(gaps)]
-        model = tangent_model(with_gaps_held(self.energy, self.strands, gaps), x)
+        gaps, tensions = self._pushing(x, gaps[self.strands.distinct(gaps)])
+        held = with_gaps_held(self.energy, self.strands, gaps)
+        model = tangent_model(held, x, tensions)
         return Touching(model, gaps, laid, radius, iteration, changes)
+
+    def _pushing(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray | None]:
+        """Return closed gaps without those whose strands pull, and tensions (n + k,).
+
+        One after another, as the forces of neighbours hang together.
+        """
+        parts = self.energy.forces(x)
+        force = sum(parts[1:], start=parts[0])
+        while len(gaps):
+            held = HeldGaps(self.energy.constraint, self.strands, gaps)
+            try:
+                tensions = held.tensions(x, force)
+            except LinAlgError:
+                break
+            forces = -tensions[len(x) :]
+            if forces.min() >= -_PULLS * float(np.abs(tensions).max()):
+                return gaps, tensions
+            gaps = gaps[np.arange(len(gaps)) != forces.argmin()]
+        return gaps, None
 
     def closed(self, x: FloatArray, gaps: Gaps) -> tuple[FloatArray, Gaps] | None:
         """Return the loop next to x with gaps closed, and them: those that met count once.
@@ -137,50 +171,31 @@ class Keeping:
             gaps = gaps[distinct]
         return None
 
-    def let_go(self, state: Touching, stuck: bool = False) -> Touching | None:
-        """Return the state without the strands that pull at each other; None if none do.
+    def cleared(
+        self, before: FloatArray, x: FloatArray, gaps: Gaps, beside: Gaps
+    ) -> tuple[FloatArray, Gaps] | None:
+        """Return the loop next to x with gaps closed, and others that overlap without.
 
-        Those whose pull is certain, or would lead down more steeply than all that the loop
-        can do with them held; where it is stuck, all of them.
+        None if strands overlap too far, or pass each other on the way from `before`.
         """
-        if not len(state.gaps) or not (state.forces < 0.0).any():
-            return None
-        least = 0.0
-        if not stuck:
-            model = state.model
-            rows = self.strands.between(model.x, state.gaps).jacobian()
-            sizes = np.linalg.norm(rows / model.scale, axis=1)
-            steeper = float(np.linalg.norm(model.gradient)) / sizes
-            least = (
-                steeper if model.residual > _ASKED else np.minimum(steeper, state.uncertain)
-            )
-        pulling = state.forces < -least
-        return self.without(state, pulling) if pulling.any() else None
+        for _ in range(_ROUNDS):
+            closed = self.closed(x, gaps)
+            if closed is None or passed(before, closed[0]):
+                return None
+            x, gaps = closed
+            near, widths = self.strands.near(x, NEGATIVE, beside)
+            held, _ = self.strands.at(x, gaps)
+            new = self.strands.unlike(near, held)
+            if not new.any():
+                return x, gaps
+            if widths[new].min() < -_DEEP * self.strands.diameter:
+                return None
+            gaps = gaps.joined(near[new])
+        return None
 
     def without(self, state: Touching, let_go: BoolArray) -> Touching:
         """Return the state with some of its gaps (k,) no longer closed."""
         return self.moved(state, state.model.x, state.gaps[~let_go])
-
-    def crossing(self, state: Touching) -> Touching | None:
-        """Return the state with strands touching at points that no longer lie along.
-
-        None if they do so nowhere, or have done so too often. The energy may rise by a
-        force times the tiny gap that is closed.
-        """
-        x, gaps = state.model.x, state.gaps
-        if state.changes >= _CHANGES or gaps.slides.all():
-            return None
-        crossing = self.strands.crossing(x, gaps)
-        if not crossing.any():
-            return None
-        kept, changed = gaps[~crossing], gaps[crossing]
-        laid = state.laid[self.strands.unlike(state.laid, changed, ALONG)]
-        try:
-            points, _ = self.strands.at(x, replace(changed, slides=crossing[crossing]))
-        except LinAlgError:
-            return None
-        points = points[self.strands.distinct(points)]
-        return self._changed(state, kept.joined(points), laid)
 
     def mended(self, state: Touching) -> Touching | None:
         """Return the state with contacts of the kind, and at the places, they should have.
@@ -189,7 +204,33 @@ class Keeping:
         """
         if state.changes >= _CHANGES or not len(state.gaps):
             return None
-        return self._parted(state) or self._laid_evenly(state)
+        return self._told(state) or self._parted(state) or self._laid_evenly(state)
+
+    def _told(self, state: Touching) -> Touching | None:
+        """Return the state with contacts at points, or along strands, as they spread.
+
+        None if all are so.
+        """
+        x, gaps = state.model.x, state.gaps
+        try:
+            slides = self._at_points(state)
+            points, _ = self.strands.at(x, replace(gaps, slides=slides))
+        except LinAlgError:
+            return None
+        if (slides == gaps.slides).all():
+            return None
+        laid = state.laid[self.strands.unlike(state.laid, points[slides], ALONG)]
+        return self._changed(state, points[self.strands.distinct(points)], laid)
+
+    def _at_points(self, state: Touching) -> BoolArray:
+        """Return which gaps (k,) are places of contacts that are points."""
+        gaps, contact = state.gaps, self.strands.contacts(state.gaps)
+        slides = gaps.slides.copy()
+        for own in (contact == number for number in range(int(contact.max()) + 1)):
+            least = _LINE if gaps.slides[own].all() else _POINT
+            spreads = spread(self.strands, state.model.x, gaps[own], state.forces[own])
+            slides[own] = spreads >= least
+        return slides
 
     def _parted(self, state: Touching) -> Touching | None:
         """Return the state with points where strands overlap between two vertices' gaps.

@@ -1,4 +1,7 @@
+from .contact.descent import CLOSED as CLOSED, ContactDescent as ContactDescent
+from .contact.keeping import Touching as Touching
 from .contact.record import contacts_at as contacts_at
+from .contact.separation import separated as separated
 from .descent import Descent as Descent
 from .equilibrium import (
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,

@@ -93,7 +93,7 @@ class ContactDescent:
             step = model.newton_step(radius)
             if step is None:
                 step = bounded_step(self.energy, model, radius)
-            reached = self._reach(state, step.moved)
+            reached = self.reach(state, step.moved)
             if reached is not None:
                 x, gaps, noise = reached
                 gained = change_of_energy(self.energy, model.x, x)
@@ -106,7 +106,7 @@ class ContactDescent:
             radius = 0.25 * min(step.size, radius)
         return None
 
-    def _reach(
+    def reach(
         self, state: Touching, moved: FloatArray
     ) -> tuple[FloatArray, Gaps, float] | None:
         """Return the loop that a step leads to, with the gaps that it closes.

@@ -149,7 +149,7 @@ class _Finder:
         for number in range(1, self.plan.starts + 1):
             index, steps = rng.integers([self.plan.index + 1, _TOWARDS + 1])
             step = first(int(steps), towards_index(int(index)), newton)
-            x = self._random_loop(rng)
+            x = self._drawn(lambda: self._in_film(random_loop(self.problem.loop, rng)))
             found = self._search(self.problem.disk.shape, x, step)
             if found is not None:
                 self._is_new(met, found, number)
@@ -181,17 +181,17 @@ class _Finder:
         self, met: list[_Met], around: BranchPoint, rng: np.random.Generator, number: int
     ) -> None:
         """Add what is found from one guess near an equilibrium, one after the other."""
-        shape, x = equilibrium(around).shape, self._loop_near(displaced(around, rng))
+        shape, x = equilibrium(around).shape, self._drawn(lambda: displaced(around, rng))
         for _ in range(_IN_A_ROW):
             step = deflated([known.point.x for known in met], self.same)
             found = self._search(shape, x, step)
             if found is None or not self._is_new(met, found, number):
                 return
 
-    def _random_loop(self, rng: np.random.Generator) -> FloatArray | None:
-        """Return a random loop (n, d), drawn anew where strands cannot be taken apart."""
+    def _drawn(self, draw: Callable[[], FloatArray]) -> FloatArray | None:
+        """Return a loop (n, d) drawn at random, anew where strands would not come apart."""
         for _ in range(_DRAWS):
-            x = self._loop_near(self._in_film(random_loop(self.problem.loop, rng)))
+            x = self._loop_near(draw())
             if x is not None:
                 return x
         return None

@@ -33,12 +33,27 @@ from eulerplateau.branches.film_family import FilmFamily
 from eulerplateau.branches.point import BranchPoint, point_near
 from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, passed
-from eulerplateau.solvers import CLOSED, ContactDescent, Touching, separated
+from eulerplateau.solvers import (
+    CLOSED,
+    ContactDescent,
+    Touching,
+    change_of_energy,
+    separated,
+)
+
+# As deflation's, and as many changes of what touches.
+_STEPS = 2 * STEPS
 
 
 def apart(family: FilmFamily, x: FloatArray) -> FloatArray | None:
-    """Return a loop near x (n, d) whose strands do not overlap; None if there is none."""
-    return separated(_contact(family).strands, x)
+    """Return a loop near x (n, d) whose strands do not overlap; None if there is none.
+
+    Or if it bends more than a rod so thick can.
+    """
+    found = separated(_contact(family).strands, x)
+    if found is None or family.problem.loop.is_too_thick(found):
+        return None
+    return found
 
 
 def search(
@@ -52,14 +67,16 @@ def search(
     try:
         touching, _ = way.descent.strands.near(x, CLOSED)
         state: Touching | None = way.descent.keeping.at(x, touching, FIRST_RADIUS)
-        for _ in range(2 * STEPS):
+        for _ in range(_STEPS):
             heed()
             if state is None:
                 return None
             way = way.near(state.model.x)
             keeping = way.descent.keeping
-            other = keeping.let_go(state) or keeping.crossing(state)
-            if other is None and state.model.residual < NEXT:
+            near = state.model.residual < NEXT
+            # Far from rest all that pulls is let go: the step may close it again.
+            other = keeping.let_go(state, stuck=not near) or keeping.crossing(state)
+            if other is None and near:
                 return way.settled(state)
             state = other or way.advanced(state, step)
     except LinAlgError:  # no film on this loop, no step, or strands that meet
@@ -107,10 +124,10 @@ class _Way:
             reached = self.descent.reach(state, model.displacement(part))
             if reached is not None:
                 x, gaps, noise = reached
-                gained = energy.change(model.x, x - model.x)
+                gained = change_of_energy(energy, model.x, x)
                 led = model.coefficients(x - model.x)
-                trusted = wider(model, led, gained, radius, noise)
-                if trusted is not None:
+                trusted = gained is not None and wider(model, led, gained, radius, noise)
+                if trusted:
                     return self.descent.keeping.moved(state, x, gaps, trusted)
             radius = 0.4 * min(size, radius)
         return None

@@ -2,7 +2,7 @@ from .contact.descent import CLOSED as CLOSED, ContactDescent as ContactDescent
 from .contact.keeping import Touching as Touching
 from .contact.record import contacts_at as contacts_at
 from .contact.separation import separated as separated
-from .descent import Descent as Descent
+from .descent import Descent as Descent, change_of_energy as change_of_energy
 from .equilibrium import (
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,
     RESOLVED_TURNING as RESOLVED_TURNING,

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -29,10 +30,9 @@ from eulerplateau.branches.film_family import (
     family_on,
     likeness_of,
 )
-from eulerplateau.branches.likeness import Likeness
+from eulerplateau.branches.likeness import Likeness, symmetry_of
 from eulerplateau.branches.loop_starts import circle, displaced, random_loop
 from eulerplateau.branches.point import BranchPoint
-from eulerplateau.branches.symmetry import OPERATIONS, loop_symmetries
 from eulerplateau.loop import close_with_lengths
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers import Equilibrium, Problem, solve
@@ -40,10 +40,9 @@ from eulerplateau.threads import one_thread
 
 # At most so many steps towards an index, before Newton's.
 _TOWARDS = 20
-# Random loops are drawn so often at most: in a plane many cross themselves.
-_DRAWS = 20
-# Points along each edge, by which symmetries are told.
-_BETWEEN = 4
+# Random loops are drawn so often at most: in a plane many cross themselves. And every so
+# manieth is flat where strands touch: planar films in contact are reached from few others.
+_DRAWS, _FLAT = 20, 3
 # From one guess deflation finds so many at most.
 _IN_A_ROW = 5
 _Apart = Callable[[FilmFamily, FloatArray], FloatArray | None]
@@ -149,7 +148,8 @@ class _Finder:
         for number in range(1, self.plan.starts + 1):
             index, steps = rng.integers([self.plan.index + 1, _TOWARDS + 1])
             step = first(int(steps), towards_index(int(index)), newton)
-            x = self._drawn(lambda: self._in_film(random_loop(self.problem.loop, rng)))
+            flat = self.problem.loop.diameter is not None and number % _FLAT == 0
+            x = self._drawn(partial(self._random_loop, rng, 2 if flat else 3))
             found = self._search(self.problem.disk.shape, x, step)
             if found is not None:
                 self._is_new(met, found, number)
@@ -181,7 +181,8 @@ class _Finder:
         self, met: list[_Met], around: BranchPoint, rng: np.random.Generator, number: int
     ) -> None:
         """Add what is found from one guess near an equilibrium, one after the other."""
-        shape, x = equilibrium(around).shape, self._drawn(lambda: displaced(around, rng))
+        shape = equilibrium(around).shape
+        x = self._drawn(partial(displaced, around, rng))
         for _ in range(_IN_A_ROW):
             step = deflated([known.point.x for known in met], self.same)
             found = self._search(shape, x, step)
@@ -195,6 +196,12 @@ class _Finder:
             if x is not None:
                 return x
         return None
+
+    def _random_loop(self, rng: np.random.Generator, dimension: int) -> FloatArray:
+        """Return a random loop (n, d), in a plane if its dimension is 2."""
+        x = random_loop(self.problem.loop, rng)
+        x[:, dimension:] = 0.0
+        return self._in_film(x)
 
     def _in_film(self, x: FloatArray) -> FloatArray:
         """Return a loop (n, 3) in the film's coordinates (n, d), flat if they are."""
@@ -257,34 +264,3 @@ class _Finder:
             if self._matters(point)
         ]
         return sorted(found, key=lambda entry: entry.equilibrium.energy)
-
-
-def symmetry_of(x: FloatArray, same: Likeness, within: float) -> str:
-    """Return what brings a loop (n, 3) back onto itself, in words.
-
-    `round`, and how often it is wound; or into how many parts that are alike it falls, and
-    the mirrors, half turns and inversion along its axes, `box` if it has all of them.
-    """
-    turns = same.turns(x, within)
-    if turns == 0:
-        times = round(_turning(x) / (2 * np.pi))
-        return "round" if times == 1 else f"round; wound {times} times"
-    parts = [f"{turns}-fold"] if turns > 1 else []
-    own = loop_symmetries(_finer(x), within)
-    return "; ".join([*parts, *(["box"] if len(own) == len(OPERATIONS) else own)])
-
-
-def _turning(x: FloatArray) -> float:
-    """Return the sum of the angles between consecutive edges of a loop (n, 3), radians."""
-    edges = np.roll(x, -1, axis=0) - x
-    edges /= np.linalg.norm(edges, axis=1)[:, None]
-    cosines = np.sum(edges * np.roll(edges, 1, axis=0), axis=1)
-    return float(np.sum(np.arccos(np.clip(cosines, -1, 1))))
-
-
-def _finer(x: FloatArray) -> FloatArray:
-    """Return a loop (n, 3) with points between its vertices, where an axis may pass."""
-    after = np.roll(x, -1, axis=0)
-    parts = np.arange(_BETWEEN)[None, :, None] / _BETWEEN
-    finer: FloatArray = (x[:, None] + parts * (after - x)[:, None]).reshape(-1, x.shape[1])
-    return finer

@@ -13,12 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.branches.symmetry import in_space, numberings
+from eulerplateau.branches.symmetry import OPERATIONS, in_space, loop_symmetries, numberings
 from eulerplateau.loop import Loop
 
 # Points are numbered alike after 1/2, 1/3, 1/4, 1/6 and 1/12 of the way round.
 _DIVISIBLE = 12
 _SLIDINGS = 5
+# Points along each edge, by which symmetries are told.
+_BETWEEN = 4
 
 
 @dataclass(frozen=True)
@@ -177,3 +179,34 @@ def _evenly(rest_lengths: FloatArray, first: int) -> FloatArray:
     points[np.arange(m), (edge + first) % n] = 1 - part
     points[np.arange(m), (edge + 1 + first) % n] += part
     return points
+
+
+def symmetry_of(x: FloatArray, same: Likeness, within: float) -> str:
+    """Return what brings a loop (n, 3) back onto itself, in words.
+
+    `round`, and how often it is wound; or into how many parts that are alike it falls, and
+    the mirrors, half turns and inversion along its axes, `box` if it has all of them.
+    """
+    turns = same.turns(x, within)
+    if turns == 0:
+        times = round(_turning(x) / (2 * np.pi))
+        return "round" if times == 1 else f"round; wound {times} times"
+    parts = [f"{turns}-fold"] if turns > 1 else []
+    own = loop_symmetries(_finer(x), within)
+    return "; ".join([*parts, *(["box"] if len(own) == len(OPERATIONS) else own)])
+
+
+def _turning(x: FloatArray) -> float:
+    """Return the sum of the angles between consecutive edges of a loop (n, 3), radians."""
+    edges = np.roll(x, -1, axis=0) - x
+    edges /= np.linalg.norm(edges, axis=1)[:, None]
+    cosines = np.sum(edges * np.roll(edges, 1, axis=0), axis=1)
+    return float(np.sum(np.arccos(np.clip(cosines, -1, 1))))
+
+
+def _finer(x: FloatArray) -> FloatArray:
+    """Return a loop (n, 3) with points between its vertices, where an axis may pass."""
+    after = np.roll(x, -1, axis=0)
+    parts = np.arange(_BETWEEN)[None, :, None] / _BETWEEN
+    finer: FloatArray = (x[:, None] + parts * (after - x)[:, None]).reshape(-1, x.shape[1])
+    return finer

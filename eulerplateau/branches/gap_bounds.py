@@ -168,7 +168,7 @@ class GapBounds:
         return forces
 
     def _others(self, x: FloatArray, held: Gaps) -> tuple[Gaps, FloatArray]:
-        """Return where else strands are near than where held, and how near, in diameters."""
+        """Return where strands are near that are not held, and how near, in diameters."""
         strands = self.strands
         beside = held[~held.slides]
         near, widths = strands.near(x, _REACH * strands.diameter, beside)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import cast
+from typing import Protocol, cast
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -29,13 +29,15 @@ from eulerplateau.branches.deflation import (
     Step,
     wider,
 )
-from eulerplateau.branches.film_family import FilmFamily
+from eulerplateau.branches.family import Family
 from eulerplateau.branches.point import BranchPoint, point_near
+from eulerplateau.film import FilmOfLoop
 from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, passed
 from eulerplateau.solvers import (
     CLOSED,
     ContactDescent,
+    Problem,
     Touching,
     change_of_energy,
     separated,
@@ -45,19 +47,38 @@ from eulerplateau.solvers import (
 _STEPS = 2 * STEPS
 
 
-def apart(family: FilmFamily, x: FloatArray) -> FloatArray | None:
+class FilmOnLoop(Family, Protocol):
+    """A family of films on a loop with a diameter: a film_family.FilmFamily of one."""
+
+    @property
+    def film(self) -> FilmOfLoop:
+        """The film, good near one shape."""
+
+    @property
+    def contact(self) -> object:
+        """Which gaps are closed: a Contact."""
+
+    def at(self, value: float) -> tuple[Problem, float]:
+        """Return the problem and its load at a value of the parameter."""
+
+    def on(self, film: FilmOfLoop, contact: Contact | None = None) -> FilmOnLoop:
+        """Return the family of another film, or with other gaps closed."""
+
+
+def apart(family: FilmOnLoop, x: FloatArray) -> FloatArray | None:
     """Return a loop near x (n, d) whose strands do not overlap; None if there is none.
 
     Or if it bends more than a rod so thick can.
     """
-    found = separated(_contact(family).strands, x)
-    if found is None or family.problem.loop.is_too_thick(found):
+    strands = _contact(family).strands
+    found = separated(strands, x)
+    if found is None or strands.loop.is_too_thick(found):
         return None
     return found
 
 
 def search(
-    family: FilmFamily, x: FloatArray, value: float, step: Step
+    family: FilmOnLoop, x: FloatArray, value: float, step: Step
 ) -> BranchPoint | None:
     """Return the equilibrium to which steps lead from a loop x (n, d) without overlaps.
 
@@ -84,7 +105,7 @@ def search(
     return None
 
 
-def _contact(family: FilmFamily) -> Contact:
+def _contact(family: FilmOnLoop) -> Contact:
     assert isinstance(family.contact, Contact)
     return family.contact
 
@@ -93,7 +114,7 @@ def _contact(family: FilmFamily) -> Contact:
 class _Way:
     """How a search goes on where a family's film is good, whatever touches."""
 
-    family: FilmFamily
+    family: FilmOnLoop
     value: float
 
     @cached_property
@@ -108,7 +129,7 @@ class _Way:
         if self.descent.energy.holds(x):
             return self
         film = self.family.film.renewed(x)
-        return replace(self, family=replace(self.family, film=film))
+        return replace(self, family=self.family.on(film))
 
     def advanced(self, state: Touching, step: Step) -> Touching | None:
         """Return the state after a step, as long as it can be trusted; None if none can.
@@ -144,7 +165,7 @@ class _Way:
             point = way._next_to(x, gaps)
             if point is None or passed(state.model.x, point.x):
                 return None
-            family, keeping = cast(FilmFamily, point.family), way.descent.keeping
+            family, keeping = cast(FilmOnLoop, point.family), way.descent.keeping
             gaps = _contact(family).touch.gaps
             mended = keeping.mended(keeping.at(point.x, gaps, FIRST_RADIUS))
             if mended is not None:
@@ -153,15 +174,15 @@ class _Way:
             x, film = point.x, family.film.renewed(point.x)
             if film is family.film or (before is not None and _agrees(before, x)):
                 return point
-            way, before = replace(self, family=replace(family, film=film)), x
+            way, before = replace(self, family=family.on(film)), x
         return None
 
     def _next_to(self, x: FloatArray, gaps: Gaps) -> BranchPoint | None:
         """Return the equilibrium next to a loop at which nothing pulls or overlaps."""
         problem, _ = self.family.at(self.value)
 
-        def family(contact: Contact) -> FilmFamily:
-            return replace(self.family, contact=contact)
+        def family(contact: Contact) -> FilmOnLoop:
+            return self.family.on(self.family.film, contact)
 
         contact, x = contact_near(problem.loop, x, self.value, gaps, family)
         point = point_near(family(contact), x, self.value)

@@ -11,11 +11,12 @@
     locus.py        folds and bifurcations in two parameters, point by point
                     (locus_point.py, normal_form.py); film_locus.py: those of a film
     family.py       what is varied: energies of a loop that differ in one parameter
-    catalogue.py    the distinct equilibria at a load: from random starts, and by deflation
-                    (deflation.py), told apart by likeness.py
+    catalogue.py    the distinct equilibria at a load: from random loops (loop_starts.py),
+                    and by deflation (deflation.py), told apart by likeness.py; where
+                    strands touch, by contact_search.py
     symmetry.py     which symmetries a mode breaks; scaling.py: exponents at an onset
 
-Only film*.py, contact.py and catalogue.py know films: any `Family` of energies of a loop
+Only film*.py, contact*.py and catalogue.py know films: any `Family` of energies of a loop
 can be followed.
 """
 

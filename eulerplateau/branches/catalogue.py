@@ -9,7 +9,8 @@ is known divided out, again and again until it comes to nothing new (deflation.p
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -23,30 +24,29 @@ from eulerplateau.branches.deflation import (
     search,
     towards_index,
 )
-from eulerplateau.branches.film_family import equilibrium, family_near, likeness_of
-from eulerplateau.branches.likeness import Likeness
-from eulerplateau.branches.point import BranchPoint, point_near
-from eulerplateau.branches.symmetry import OPERATIONS, loop_symmetries
-from eulerplateau.loop import Loop, close_with_lengths
+from eulerplateau.branches.film_family import (
+    FilmFamily,
+    equilibrium,
+    family_on,
+    likeness_of,
+)
+from eulerplateau.branches.likeness import Likeness, symmetry_of
+from eulerplateau.branches.loop_starts import circle, displaced, random_loop
+from eulerplateau.branches.point import BranchPoint
+from eulerplateau.loop import close_with_lengths
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers import Equilibrium, Problem, solve
 from eulerplateau.threads import one_thread
 
-# Random loops are circles with waves of these numbers, of sizes up to this over the number
-# squared; small ones are as many as large ones are rare.
-_WAVES, _SIZE = range(2, 6), 2.0
 # At most so many steps towards an index, before Newton's.
 _TOWARDS = 20
-# The r.m.s. displacements from which deflation starts, in units of L.
-_DISPLACED = 0.005, 0.05
-# Of the stiffest mode's curvature: modes softer are displaced as if they were as stiff.
-_SOFTEST = 1e-7
-# Points along each edge, by which symmetries are told.
-_BETWEEN = 4
+# Random loops are drawn so often at most: in a plane many cross themselves. And every so
+# manieth is flat where strands touch: planar films in contact are reached from few others.
+_DRAWS, _FLAT = 20, 3
 # From one guess deflation finds so many at most.
 _IN_A_ROW = 5
-# A soap film made anew at its own shape so often agrees with it; L.
-_MADE_ANEW, _AGREES = 8, 1e-6
+_Apart = Callable[[FilmFamily, FloatArray], FloatArray | None]
+_Search = Callable[[FilmFamily, FloatArray, float, Step], BranchPoint | None]
 
 
 @dataclass(frozen=True)
@@ -104,18 +104,42 @@ def catalogue_at(
     Those of Morse index up to plan.index that the mesh resolves. `searched` is called after
     each of the 2 plan.starts searches.
     """
-    finder = _Finder(problem, load, plan, likeness_of(problem, plan.distance), searched)
+    same = likeness_of(problem, plan.distance)
+    family = family_on(problem, problem.film.of_loop(problem.disk.shape), "load", load)
+    finder = _Finder(problem, load, plan, same, searched, family, *_ways(problem))
     with one_thread():
         return finder.merged(finder.by_starts(), finder.by_deflation())
 
 
+def _ways(problem: Problem) -> tuple[_Apart, _Search]:
+    """Return how loops are taken apart that may touch, and how equilibria are sought."""
+    if problem.loop.diameter is None:
+        return lambda family, x: x, search
+    # Loaded for such loops only.
+    from eulerplateau.branches import contact_search
+
+    return contact_search.apart, contact_search.search
+
+
 @dataclass(frozen=True)
 class _Finder:
+    """What seeks the equilibria of a problem at a load.
+
+    Attributes
+    ----------
+    family : the film near its disk
+    apart : of the family and a loop (n, d), the loop near by that strands allow, if any
+    search : of the family, such a loop, the load and a step, the equilibrium they lead to
+    """
+
     problem: Problem
     load: float
     plan: Plan
     same: Likeness
     searched: Callable[[], None]
+    family: FilmFamily
+    apart: _Apart
+    search: _Search
 
     def by_starts(self) -> list[_Met]:
         """Return what random loops come to."""
@@ -124,7 +148,8 @@ class _Finder:
         for number in range(1, self.plan.starts + 1):
             index, steps = rng.integers([self.plan.index + 1, _TOWARDS + 1])
             step = first(int(steps), towards_index(int(index)), newton)
-            x = random_loop(self.problem.loop, rng)
+            flat = self.problem.loop.diameter is not None and number % _FLAT == 0
+            x = self._drawn(partial(self._random_loop, rng, 2 if flat else 3))
             found = self._search(self.problem.disk.shape, x, step)
             if found is not None:
                 self._is_new(met, found, number)
@@ -137,7 +162,11 @@ class _Finder:
         met: list[_Met] = []
         # Where there is no such equilibrium, as of a soap film that is pinched: a circle.
         lowest, rest = solve(self.problem, self.load).shape, self.problem.disk.shape
-        for shape, x in (lowest, lowest.x_loop), (rest, circle(self.problem.loop)):
+        bases = (
+            (lowest, self.family.film.project(lowest.x_loop)),
+            (rest, self._in_film(circle(self.problem.loop))),
+        )
+        for shape, x in bases:
             base = self._search(shape, x, newton)
             if base is not None and not met:
                 met.append(_Met(base, [0]))
@@ -153,22 +182,46 @@ class _Finder:
     ) -> None:
         """Add what is found from one guess near an equilibrium, one after the other."""
         shape = equilibrium(around).shape
-        x = close_with_lengths(self.problem.loop, displaced(around, rng))
+        x = self._drawn(partial(displaced, around, rng))
         for _ in range(_IN_A_ROW):
             step = deflated([known.point.x for known in met], self.same)
             found = self._search(shape, x, step)
             if found is None or not self._is_new(met, found, number):
                 return
 
+    def _drawn(self, draw: Callable[[], FloatArray]) -> FloatArray | None:
+        """Return a loop (n, d) drawn at random, anew where strands would not come apart."""
+        for _ in range(_DRAWS):
+            x = self._loop_near(draw())
+            if x is not None:
+                return x
+        return None
+
+    def _random_loop(self, rng: np.random.Generator, dimension: int) -> FloatArray:
+        """Return a random loop (n, d), in a plane if its dimension is 2."""
+        x = random_loop(self.problem.loop, rng)
+        x[:, dimension:] = 0.0
+        return self._in_film(x)
+
+    def _in_film(self, x: FloatArray) -> FloatArray:
+        """Return a loop (n, 3) in the film's coordinates (n, d), flat if they are."""
+        flat: FloatArray = x[:, : self.problem.film.dimension]
+        return flat
+
+    def _loop_near(self, x: FloatArray) -> FloatArray | None:
+        """Return a loop near x (n, d) that keeps its lengths, its strands apart."""
+        closed = close_with_lengths(self.problem.loop, x)
+        return None if closed is None else self.apart(self.family, closed)
+
     def _search(self, near: Shape, x: FloatArray | None, step: Step) -> BranchPoint | None:
         """Return the equilibrium that steps lead to from a loop, the film near a shape."""
         if x is None:
             return None
+        film, lifted = self.problem.film, self.family.film.lift(x)
         try:
-            shape = self.problem.film.carried(near, x)
-            family, x = family_near(self.problem, shape)
-            found = search(family, x, self.load, step)
-            return None if found is None else _made_anew(found)
+            shape = film.prepared(film.carried(near, lifted))
+            family = replace(self.family, film=film.of_loop(shape))
+            return self.search(family, family.film.project(shape.x_loop), self.load, step)
         except LinAlgError:  # no film across this loop
             return None
 
@@ -211,88 +264,3 @@ class _Finder:
             if self._matters(point)
         ]
         return sorted(found, key=lambda entry: entry.equilibrium.energy)
-
-
-def random_loop(loop: Loop, rng: np.random.Generator) -> FloatArray | None:
-    """Return a smooth random loop (n, 3) that keeps its lengths; None if it cannot."""
-    x, s = circle(loop), _angles(loop)
-    size, radius = _SIZE * rng.uniform() ** 2, np.linalg.norm(x[0])
-    for wave in _WAVES:
-        a, b = rng.standard_normal((2, 3)) * size / wave**2 * radius
-        x += np.outer(np.cos(wave * s), a) + np.outer(np.sin(wave * s), b)
-    return close_with_lengths(loop, x)
-
-
-def circle(loop: Loop) -> FloatArray:
-    """Return a circle (n, 3) that is as long as the loop, its vertices as far apart."""
-    s, radius = _angles(loop), loop.rest_lengths.sum() / (2 * np.pi)
-    x: FloatArray = radius * np.stack([np.cos(s), np.sin(s), np.zeros_like(s)], axis=1)
-    return x
-
-
-def _angles(loop: Loop) -> FloatArray:
-    lengths = loop.rest_lengths
-    angles: FloatArray = 2 * np.pi * np.cumsum(lengths) / lengths.sum()
-    return angles
-
-
-def displaced(point: BranchPoint, rng: np.random.Generator) -> FloatArray:
-    """Return an equilibrium's loop (n, 3) displaced at random, as heat would displace it.
-
-    That is along each mode by the inverse root of its stiffness.
-    """
-    values, vectors = point.model.eigen
-    stiffness = np.maximum(np.abs(values), _SOFTEST * np.abs(values).max())
-    moved = point.model.displacement(
-        vectors @ (rng.standard_normal(len(values)) / np.sqrt(stiffness))
-    )
-    size = np.sqrt(np.mean(np.sum(moved**2, axis=1)))
-    found: FloatArray = point.x + moved * (rng.uniform(*_DISPLACED) / size)
-    return found
-
-
-def _made_anew(point: BranchPoint) -> BranchPoint | None:
-    """Return an equilibrium with its film known at its own shape; None if it gets lost."""
-    for _ in range(_MADE_ANEW):
-        family = point.family.near(point.x)
-        if family is point.family:
-            return point
-        again = point_near(family, point.x, point.value)
-        if again is None:
-            return None
-        moved = float(np.abs(again.x - point.x).max())
-        point = again
-        if moved < _AGREES:
-            return point
-    return None
-
-
-def symmetry_of(x: FloatArray, same: Likeness, within: float) -> str:
-    """Return what brings a loop (n, 3) back onto itself, in words.
-
-    `round`, and how often it is wound; or into how many parts that are alike it falls, and
-    the mirrors, half turns and inversion along its axes, `box` if it has all of them.
-    """
-    turns = same.turns(x, within)
-    if turns == 0:
-        times = round(_turning(x) / (2 * np.pi))
-        return "round" if times == 1 else f"round; wound {times} times"
-    parts = [f"{turns}-fold"] if turns > 1 else []
-    own = loop_symmetries(_finer(x), within)
-    return "; ".join([*parts, *(["box"] if len(own) == len(OPERATIONS) else own)])
-
-
-def _turning(x: FloatArray) -> float:
-    """Return the sum of the angles between consecutive edges of a loop (n, 3), radians."""
-    edges = np.roll(x, -1, axis=0) - x
-    edges /= np.linalg.norm(edges, axis=1)[:, None]
-    cosines = np.sum(edges * np.roll(edges, 1, axis=0), axis=1)
-    return float(np.sum(np.arccos(np.clip(cosines, -1, 1))))
-
-
-def _finer(x: FloatArray) -> FloatArray:
-    """Return a loop (n, 3) with points between its vertices, where an axis may pass."""
-    after = np.roll(x, -1, axis=0)
-    parts = np.arange(_BETWEEN)[None, :, None] / _BETWEEN
-    finer: FloatArray = (x[:, None] + parts * (after - x)[:, None]).reshape(-1, x.shape[1])
-    return finer

@@ -60,7 +60,8 @@ class Contact:
 
     def near(self, x: FloatArray) -> Contact:
         """Return the gaps of the kind, and at the places, they should be at x (n, d)."""
-        return replace(self, touch=GapBounds(self.strands, self.touch).settled(x))
+        touch = GapBounds(self.strands, self.touch).settled(x)
+        return self if touch is self.touch else replace(self, touch=touch)
 
     def beyond(self, point: BranchPoint, loop: Loop, which: int) -> tuple[Contact, str]:
         """Return what is closed beyond a point where one of its margins vanishes."""

@@ -27,10 +27,12 @@ from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import TangentModel, tangent_model
 
 # R.m.s. lengths of steps, in units of L.
-_FIRST_RADIUS, _LONGEST, _SMALLEST_RADIUS = 0.01, 0.1, 1e-5
-_STEPS = 40
+FIRST_RADIUS, SMALLEST_RADIUS, _LONGEST = 0.01, 1e-5, 0.1
+STEPS = 40
 # Residual below which a loop is next to an equilibrium.
-_NEXT = 1e-3
+NEXT = 1e-3
+# A soap film made anew at its own shape so often agrees with it; L.
+MADE_ANEW, AGREES = 8, 1e-6
 # Of the largest: curvatures below are taken for this, lest a soft mode takes all of a step.
 _SOFT = 1e-6
 
@@ -98,16 +100,16 @@ def first(steps: int, way: Step, then: Step) -> Step:
 
 
 def search(family: Family, x: FloatArray, value: float, step: Step) -> BranchPoint | None:
-    """Return the equilibrium to which steps lead from a loop x (n, 3); None if to none.
+    """Return the equilibrium to which steps lead from a loop x (n, d); None if to none.
 
     Steps are as long as the second-order model is right about the energy, which may rise.
     """
-    radius = _FIRST_RADIUS
+    radius = FIRST_RADIUS
     try:
         model = tangent_model(family.energy(value), x)
-        for _ in range(_STEPS):
-            if model.residual < _NEXT:
-                return point_near(family, model.x, value)
+        for _ in range(STEPS):
+            if model.residual < NEXT:
+                return _made_anew(point_near(family, model.x, value))
             change = step(model)
             after = _trusted(family.energy(value), model, change, radius)
             if after is None:
@@ -121,26 +123,55 @@ def search(family: Family, x: FloatArray, value: float, step: Step) -> BranchPoi
     return None
 
 
+def _made_anew(point: BranchPoint | None) -> BranchPoint | None:
+    """Return an equilibrium with its film known at its own shape; None if it gets lost."""
+    for _ in range(MADE_ANEW):
+        if point is None:
+            return None
+        family = point.family.near(point.x)
+        if family is point.family:
+            return point
+        again = point_near(family, point.x, point.value)
+        if again is not None and float(np.abs(again.x - point.x).max()) < AGREES:
+            return again
+        point = again
+    return None
+
+
 def _trusted(
     energy: LoopEnergy, model: TangentModel, change: FloatArray, radius: float
 ) -> tuple[FloatArray, float] | None:
     """Return the loop after a step (m,), as long as it can be trusted, and the next radius.
 
-    None if no length can. The model is right if it errs by a small part of what the modes
-    gain and lose, which may cancel.
+    None if no length can.
     """
     size = float(np.linalg.norm(change))
     if not np.isfinite(size) or size == 0:
         return None
-    while radius > _SMALLEST_RADIUS:
+    while radius > SMALLEST_RADIUS:
         part = min(1.0, radius / size) * change
-        first, second = model.gradient * part, 0.5 * part * (model.hessian @ part)
-        promised = float(first.sum() + second.sum())
         x = energy.constraint.project(model.x + model.displacement(part))
         if x is not None:
             gained = energy.change(model.x, x - model.x)
-            error = abs(gained - promised) / max(float(np.abs(first).sum()), 1e-300)
-            if error < 0.2:
-                return x, min(2 * radius, _LONGEST) if error < 0.05 else radius
+            trusted = wider(model, part, gained, radius)
+            if trusted is not None:
+                return x, trusted
         radius = 0.4 * min(size, radius)
     return None
+
+
+def wider(
+    model: TangentModel, part: FloatArray, gained: float, radius: float, noise: float = 0.0
+) -> float | None:
+    """Return the radius after a step (m,); None if the model was not right about it.
+
+    It is if it errs by a small part of what the modes gain and lose, which may cancel, and
+    by the `noise` of the energy that was gained.
+    """
+    first, second = model.gradient * part, 0.5 * part * (model.hessian @ part)
+    promised = float(first.sum() + second.sum())
+    off = max(abs(gained - promised) - noise, 0.0)
+    error = off / max(float(np.abs(first).sum()), 1e-300)
+    if not error < 0.2:
+        return None
+    return min(2 * radius, _LONGEST) if error < 0.05 else radius

@@ -87,11 +87,11 @@ class FilmFamily:
 
     def near(self, x: FloatArray) -> FilmFamily:
         """Return the film made anew at a loop (n_b, 3), and what touches there."""
-        return self._with(self.film.renewed(x), self.contact.near(x))
+        return self.on(self.film.renewed(x), self.contact.near(x))
 
     def released(self, x: FloatArray) -> FilmFamily:
         """Return the film as a minimal surface, where it is curved."""
-        return self._with(self.film.released(x))
+        return self.on(self.film.released(x))
 
     def kept(self, x: FloatArray) -> Mapping[str, NDArray[Any]]:
         """Return what makes the film again, good near a loop (n_b, 3)."""
@@ -99,7 +99,7 @@ class FilmFamily:
 
     def restored(self, kept: Mapping[str, NDArray[Any]]) -> FilmFamily:
         """Return the film that this was kept of."""
-        return self._with(self.film.restored(kept), self.contact.restored(kept))
+        return self.on(self.film.restored(kept), self.contact.restored(kept))
 
     def beyond(self, point: BranchPoint, which: int) -> tuple[FilmFamily, str]:
         """Return the family beyond a point where one of its margins vanishes."""
@@ -119,9 +119,10 @@ class FilmFamily:
         found = problem.classified(replace(found, contacts=contacts))
         return replace(found, iterations=point.corrections, stability=point.stability)
 
-    def _with(
+    def on(
         self, film: FilmOfLoop, contact: NoContact | Contact | None = None
     ) -> FilmFamily:
+        """Return the family of another film, or with other gaps closed; itself if it is."""
         closed = self.contact if contact is None else contact
         same = film is self.film and closed is self.contact
         return self if same else replace(self, film=film, contact=closed)

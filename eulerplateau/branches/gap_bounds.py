@@ -70,11 +70,12 @@ class GapBounds:
 
     def margins(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
         """Return the margins; those of what there is none of are positive."""
+        held = self._at(x)
         parts = (
             self._forces(x, tensions),
-            self._others(x)[1],
-            self._kinds(x, tensions),
-            self._slopes(x),
+            self._others(x, held.gaps)[1],
+            self._kinds(x, tensions, held),
+            self._slopes(x, held.gaps),
         )
         return np.array([float(each.min(initial=_REACH)) for each in parts])
 
@@ -111,13 +112,13 @@ class GapBounds:
             parts = self.strands.unlike(gone.gaps, left.gaps, ALONG).any()
             return left, "parts" if parts else ""
         if which == _GAP:
-            others, widths = self._others(x)
+            others, widths = self._others(x, held.gaps)
             return self._joined(held, others[widths <= _AT_ONCE])
         if which == _KIND:
-            turned = self._kinds(x, tensions) <= _AT_ONCE
+            turned = self._kinds(x, tensions, held) <= _AT_ONCE
             what = "joins" if (turned & held.line).any() else "splits"
             return replace(held, line=held.line ^ turned), what
-        flat = self._slopes(x) <= _AT_ONCE
+        flat = self._slopes(x, held.gaps) <= _AT_ONCE
         gaps = replace(held.gaps, slides=held.gaps.slides & ~flat)
         return replace(held, gaps=gaps), ""
 
@@ -129,16 +130,15 @@ class GapBounds:
         gaps, forces = self._at(x).gaps, self._forces(x, tensions)
         if forces.min(initial=0.0) < -_ROUNDING:
             return gaps[forces > forces.min()]
-        others, widths = self._others(x)
+        others, widths = self._others(x, gaps)
         overlaps = widths < -_ROUNDING
         return gaps.joined(others[overlaps]) if overlaps.any() else None
 
     def told(self, x: FloatArray, tensions: FloatArray) -> Touch:
         """Return what touches, told whether at points or along lines."""
-        points = replace(
-            self, touch=replace(self.touch, line=np.zeros_like(self.touch.line))
-        )
-        return replace(self._at(x), line=points._kinds(x, tensions) < 0.0)
+        held = self._at(x)
+        points = replace(held, line=np.zeros_like(held.line))
+        return replace(held, line=self._kinds(x, tensions, points) < 0.0)
 
     def settled(self, x: FloatArray) -> Touch:
         """Return the gaps as they should be at x: the same object if they are so."""
@@ -166,9 +166,9 @@ class GapBounds:
         forces: FloatArray = -tensions[len(x) :] / float(np.abs(tensions).max())
         return forces
 
-    def _others(self, x: FloatArray) -> tuple[Gaps, FloatArray]:
-        """Return where else strands are near, and how near, in diameters."""
-        strands, held = self.strands, self._at(x).gaps
+    def _others(self, x: FloatArray, held: Gaps) -> tuple[Gaps, FloatArray]:
+        """Return where strands are near that are not held, and how near, in diameters."""
+        strands = self.strands
         beside = held[~held.slides]
         near, widths = strands.near(x, _REACH * strands.diameter, beside)
         new = strands.unlike(near, held)
@@ -193,9 +193,9 @@ class GapBounds:
         line = np.append(held.line, ~self.strands.unlike(new, lines, ALONG))
         return Touch(held.gaps.joined(new), line), "touches" if fresh.any() else ""
 
-    def _kinds(self, x: FloatArray, tensions: FloatArray) -> FloatArray:
+    def _kinds(self, x: FloatArray, tensions: FloatArray, held: Touch) -> FloatArray:
         """Return by how much each of the contacts (k,) is the point, or the line, it is."""
-        held, forces = self._at(x), -tensions[len(x) :]
+        forces = -tensions[len(x) :]
         contact = self.strands.contacts(held.gaps)
         kinds = np.zeros(len(held.gaps))
         for number in range(int(contact.max(initial=-1)) + 1):
@@ -203,9 +203,8 @@ class GapBounds:
             kinds[own] = spread(self.strands, x, held.gaps[own], forces[own])
         return np.where(held.line, -kinds, kinds)
 
-    def _slopes(self, x: FloatArray) -> FloatArray:
+    def _slopes(self, x: FloatArray, held: Gaps) -> FloatArray:
         """Return by how much strands (k,) spread more than flat where a contact slides."""
-        held = self._at(x).gaps
         return np.where(held.slides, self.strands.spreading(x, held) - _FLAT, np.inf)
 
     def _single(self, gaps: Gaps) -> BoolArray:

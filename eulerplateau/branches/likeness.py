@@ -2,7 +2,8 @@
 
 Loops are compared by points that lie evenly along them. Of a film that is tied to its rest
 mesh only those numberings change nothing that bring the loop at rest back onto itself; a
-soap film's loop slides, and may be numbered from anywhere, either way round.
+soap film's loop slides, and may be numbered from anywhere, either way round. Loops are
+(n, d), d = 3, or 2 in a plane, which count as flat in space.
 """
 
 from __future__ import annotations
@@ -12,12 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.branches.symmetry import numberings
+from eulerplateau.branches.symmetry import OPERATIONS, in_space, loop_symmetries, numberings
 from eulerplateau.loop import Loop
 
 # Points are numbered alike after 1/2, 1/3, 1/4, 1/6 and 1/12 of the way round.
 _DIVISIBLE = 12
 _SLIDINGS = 5
+# Points along each edge, by which symmetries are told.
+_BETWEEN = 4
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Likeness:
-    """Which copies of a loop (n, 3) are the same, by m points along it.
+    """Which copies of a loop (n, d) are the same, by m points along it.
 
     Attributes
     ----------
@@ -58,11 +61,11 @@ class Likeness:
     slides: bool
 
     def distance(self, x: FloatArray, other: FloatArray) -> float:
-        """Return the r.m.s. distance of two loops (n, 3), less what makes no difference."""
+        """Return the r.m.s. distance of two loops (n, d), less what makes no difference."""
         return self.difference(x, other).distance
 
     def difference(self, x: FloatArray, other: FloatArray) -> Difference:
-        """Return what is left of a loop less the nearest copy of another, both (n, 3).
+        """Return what is left of a loop less the nearest copy of another, both (n, d).
 
         Of all copies by rotations and reflections, Kabsch's is the nearest; its square is
         that of both loops less twice the sum of singular values.
@@ -76,15 +79,15 @@ class Likeness:
         return Difference(a - moved @ _turn(moved, a))
 
     def slope(self, difference: Difference, moved: FloatArray) -> float:
-        """Return how the square of a difference changes as its loop moves (n, 3).
+        """Return how the square of a difference changes as its loop moves (n, d).
 
         The nearest copy is stationary: to first order it makes no difference that it moves.
         """
-        step = self.points @ moved
+        step = self.points @ in_space(moved)
         return 2 * float(np.mean(np.sum(difference.rest * step, axis=1)))
 
     def turns(self, x: FloatArray, within: float) -> int:
-        """Return after how many parts of the way round a loop (n, 3) is the same again.
+        """Return after how many parts of the way round a loop (n, d) is the same again.
 
         0 of a loop that is the same anywhere: a circle.
         """
@@ -94,7 +97,7 @@ class Likeness:
         return int(np.sum(same & ~np.roll(same, 1)))
 
     def _centred(self, x: FloatArray) -> FloatArray:
-        points = self.points @ x
+        points = self.points @ in_space(x)
         centred: FloatArray = points - points.mean(axis=0)
         return centred
 
@@ -176,3 +179,34 @@ def _evenly(rest_lengths: FloatArray, first: int) -> FloatArray:
     points[np.arange(m), (edge + first) % n] = 1 - part
     points[np.arange(m), (edge + 1 + first) % n] += part
     return points
+
+
+def symmetry_of(x: FloatArray, same: Likeness, within: float) -> str:
+    """Return what brings a loop (n, 3) back onto itself, in words.
+
+    `round`, and how often it is wound; or into how many parts that are alike it falls, and
+    the mirrors, half turns and inversion along its axes, `box` if it has all of them.
+    """
+    turns = same.turns(x, within)
+    if turns == 0:
+        times = round(_turning(x) / (2 * np.pi))
+        return "round" if times == 1 else f"round; wound {times} times"
+    parts = [f"{turns}-fold"] if turns > 1 else []
+    own = loop_symmetries(_finer(x), within)
+    return "; ".join([*parts, *(["box"] if len(own) == len(OPERATIONS) else own)])
+
+
+def _turning(x: FloatArray) -> float:
+    """Return the sum of the angles between consecutive edges of a loop (n, 3), radians."""
+    edges = np.roll(x, -1, axis=0) - x
+    edges /= np.linalg.norm(edges, axis=1)[:, None]
+    cosines = np.sum(edges * np.roll(edges, 1, axis=0), axis=1)
+    return float(np.sum(np.arccos(np.clip(cosines, -1, 1))))
+
+
+def _finer(x: FloatArray) -> FloatArray:
+    """Return a loop (n, 3) with points between its vertices, where an axis may pass."""
+    after = np.roll(x, -1, axis=0)
+    parts = np.arange(_BETWEEN)[None, :, None] / _BETWEEN
+    finer: FloatArray = (x[:, None] + parts * (after - x)[:, None]).reshape(-1, x.shape[1])
+    return finer

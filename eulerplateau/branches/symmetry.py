@@ -65,7 +65,7 @@ def mode_symmetry(
     Without `mirrors` what reverses handedness counts as no operation.
     """
     shape, axes = _along_axes(x_loop)
-    moved = _in_space(mode) @ axes.T
+    moved = in_space(mode) @ axes.T
     breaks: list[str] = []
     keeps: list[str] = []
     alike = _alike(shape)
@@ -106,7 +106,7 @@ def loop_symmetries(x_loop: FloatArray, within: float) -> tuple[str, ...]:
 
 def _along_axes(x_loop: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a loop (n, 3) by its principal axes, and these, the rows of (3, 3)."""
-    centred = _in_space(x_loop - x_loop.mean(axis=0))
+    centred = in_space(x_loop - x_loop.mean(axis=0))
     axes = np.linalg.svd(centred, full_matrices=False)[2]
     return centred @ axes.T, axes
 
@@ -124,7 +124,7 @@ def _own_operations(shape: FloatArray, within: float) -> dict[str, IntArray]:
     return own
 
 
-def _in_space(rows: FloatArray) -> FloatArray:
+def in_space(rows: FloatArray) -> FloatArray:
     """Return vectors (n, d) in space (n, 3)."""
     return np.pad(rows, ((0, 0), (0, 3 - rows.shape[1])))
 

@@ -135,14 +135,16 @@ def signed_twists(branch: Branch) -> list[FloatArray]:
 
 def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
     """Return films as vectors, turned to lie alike, flat ones seen from above."""
-    films = [aligned([read_shape(path) for path in own]) for own in paths]
+    stored = [[read_shape(path) for path in own] for own in paths]
+    radii = [0.5 * one.parameters.get("diameter", 0.0) for own in stored for one in own]
+    films = [aligned(own) for own in stored]
     every = [shape for shapes in films for shape in shapes]
     views = own_views(every)
     eyes = [view.eye for view in views]
-    half = room(every, eyes)
-    left = iter(eyes)
+    half = room(every, eyes, max(radii))
+    looks = iter([{"eye": eye, "radius": r} for eye, r in zip(eyes, radii, strict=True)])
     draw = [
-        [partial(draw_film, shape=shape, eye=next(left), half=half) for shape in shapes]
+        [partial(draw_film, shape=shape, half=half, **next(looks)) for shape in shapes]
         for shapes in films
     ]
     return Portraits(draw, half, note=_note(every, views), bar=_BAR)

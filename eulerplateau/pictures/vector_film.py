@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh import Shape
@@ -27,19 +28,33 @@ _SEAM = 0.2
 _STRETCHES = 6
 # Part of its colour that a film keeps where it is seen edge-on.
 _DARKEST = 0.72
+# Part of a wire's width that is drawn lighter, and how much of its darkness that keeps.
+_MIDDLE, _DARK = 0.75, 0.6
 
 
-def room(shapes: Sequence[Shape], eyes: Sequence[FloatArray]) -> tuple[float, float]:
-    """Return half the width and height that hold every shape about its loop's centre."""
+def room(
+    shapes: Sequence[Shape], eyes: Sequence[FloatArray], radius: float = 0.0
+) -> tuple[float, float]:
+    """Return half the width and height that hold every shape about its loop's centre.
+
+    radius : float, of the thickest wire
+    """
     seen = [_project(shape.x, eye)[:, :2] for shape, eye in zip(shapes, eyes, strict=True)]
-    half = 1.06 * np.abs(np.concatenate(seen)).max(axis=0)
+    half = 1.06 * (np.abs(np.concatenate(seen)).max(axis=0) + radius)
     return float(half[0]), float(half[1])
 
 
-def draw_film(ax: Axes, shape: Shape, eye: FloatArray, half: tuple[float, float]) -> None:
+def draw_film(
+    ax: Axes,
+    shape: Shape,
+    eye: FloatArray,
+    half: tuple[float, float],
+    radius: float = 0.0,
+) -> None:
     """Draw a shape, centred at the origin, into a field of `half` its width and height.
 
     `eye` is the unit vector (3,) towards the viewer. What hides something is painted after.
+    The loop is a line, or twice as wide as its `radius`, in the unit of the shape.
     """
     from matplotlib.collections import PolyCollection
 
@@ -48,15 +63,24 @@ def draw_film(ax: Axes, shape: Shape, eye: FloatArray, half: tuple[float, float]
     ends = _stretches(x[shape.loop])
     outlines = [*corners, *ends]
     depth = np.array([outline[:, 2].mean() for outline in outlines])
-    order = np.lexsort((depth, layers(_what_hides(shape, corners, parents, ends), depth)))
+    before = _what_hides(shape, corners, parents, ends, radius)
+    order = np.lexsort((depth, layers(before, depth)))
     film = _shaded(x[shape.triangles])[parents]
-    colours = np.concatenate([film, [LOOP] * len(ends)])[order]
+    n, m = len(film), len(ends)
+    widths, colours = np.repeat([_SEAM, _LOOP_WIDTH], [n, m]), [*film, *[LOOP] * m]
+    if radius > LOOP_RADIUS:
+        # On each stretch lies its lighter middle.
+        order = np.repeat(order, np.where(order < n, 1, 2))
+        order[1:] += m * (order[1:] == order[:-1])
+        outlines[n:] = [*_bands(ends, radius), *_bands(ends, _MIDDLE * radius)]
+        widths = np.repeat([_SEAM, 0.0, _SEAM], [n, m, m])
+        colours += [_lighter(LOOP)] * m
     ax.add_collection(
         PolyCollection(
             [outlines[place][:, :2] for place in order],
-            facecolors=colours,
-            edgecolors=colours,
-            linewidths=np.repeat([_SEAM, _LOOP_WIDTH], [len(film), len(ends)])[order],
+            facecolors=np.array(colours)[order],
+            edgecolors=np.array(colours)[order],
+            linewidths=widths[order],
             joinstyle="round",
             capstyle="round",
         )
@@ -66,19 +90,26 @@ def draw_film(ax: Axes, shape: Shape, eye: FloatArray, half: tuple[float, float]
 
 
 def _what_hides(
-    shape: Shape, corners: FloatArray, parents: IntArray, ends: FloatArray
+    shape: Shape,
+    corners: FloatArray,
+    parents: IntArray,
+    ends: FloatArray,
+    radius: float,
 ) -> IntArray:
     """Return pairs (m, 2) of which the first is to be painted before the second.
 
     Numbered are first the parts (n, 3, 3) of the film, then the stretches (k n_b, 2, 3) of
     the loop. These lie over the triangles that their edge ends at, and in the way of all
-    others as the front of a wire does.
+    others as the front of a wire does, which hides what of the film lies in it.
     """
     n, m = len(corners), len(ends)
     numbers = np.concatenate([np.arange(n), np.tile(n + np.arange(m), 2)])
-    seen = numbers[overlaps(np.concatenate([corners, _tube(ends)]))]
+    seen = numbers[
+        overlaps(np.concatenate([corners, _tube(ends, max(radius, LOOP_RADIUS))]))
+    ]
     seen = seen[(seen < n).any(axis=1)]
-    over = _rim(shape, parents) + np.array([0, n])
+    inside = _inside(corners, ends, radius)
+    over = np.concatenate([_rim(shape, parents), inside]) + np.array([0, n])
     key = np.array([n + m, 1])
     among = np.isin(np.sort(seen, axis=1) @ key, np.sort(over, axis=1) @ key)
     return np.concatenate([seen[~among], over])
@@ -98,6 +129,14 @@ def _rim(shape: Shape, parents: IntArray) -> IntArray:
     )
 
 
+def _inside(corners: FloatArray, ends: FloatArray, radius: float) -> IntArray:
+    """Return pairs (m, 2) of a part of the film and a stretch of wire it reaches into."""
+    points, middles = cKDTree(corners.reshape(-1, 3)), cKDTree(ends.mean(axis=1))
+    near = points.sparse_distance_matrix(middles, radius, output_type="ndarray")
+    pairs = np.stack([near["i"] // 3, near["j"]], axis=1).astype(np.int64)
+    return np.unique(pairs, axis=0)
+
+
 def _stretches(x_loop: FloatArray) -> FloatArray:
     """Return the ends (k n_b, 2, 3) of a loop's edges (n_b, 3), each in k stretches."""
     share = np.arange(_STRETCHES + 1)[:, None] / _STRETCHES
@@ -106,15 +145,32 @@ def _stretches(x_loop: FloatArray) -> FloatArray:
     return np.stack([points[:, :-1], points[:, 1:]], axis=2).reshape(-1, 2, 3)
 
 
-def _tube(ends: FloatArray) -> FloatArray:
+def _bands(ends: FloatArray, radius: float) -> FloatArray:
+    """Return what a wire along stretches (m, 2, 3), end to end, covers: (m, 4, 3)."""
+    place = ends[:, 0]
+    way = (np.roll(place, -1, axis=0) - np.roll(place, 1, axis=0))[:, :2]
+    way /= np.maximum(np.linalg.norm(way, axis=1), 1e-300)[:, None]
+    aside = radius * np.stack([-way[:, 1], way[:, 0], np.zeros(len(way))], axis=1)
+    left, right = place + aside, place - aside
+    after = np.roll([left, right], -1, axis=1)
+    return np.stack([left, after[0], after[1], right], axis=1)
+
+
+def _tube(ends: FloatArray, radius: float) -> FloatArray:
     """Return the front of a tube round edges (n_b, 2, 3): two triangles (3, 3) for each."""
     way = ends[:, 1, :2] - ends[:, 0, :2]
     across = np.stack([-way[:, 1], way[:, 0]], axis=1)
-    across *= LOOP_RADIUS / np.maximum(np.linalg.norm(way, axis=1), 1e-300)[:, None]
-    start, end = (ends[:, side] + [0.0, 0.0, LOOP_RADIUS] for side in (0, 1))
+    across *= radius / np.maximum(np.linalg.norm(way, axis=1), 1e-300)[:, None]
+    start, end = (ends[:, side] + [0.0, 0.0, radius] for side in (0, 1))
     aside = np.concatenate([across, np.zeros((len(ends), 1))], axis=1)
     a, b, c, d = start - aside, end - aside, end + aside, start + aside
     return np.concatenate([np.stack(half, axis=1) for half in ((a, b, c), (a, c, d))])
+
+
+def _lighter(colour: FloatArray) -> FloatArray:
+    """Return a colour (3,) mixed with white."""
+    lighter: FloatArray = 1 - _DARK * (1 - np.asarray(colour))
+    return lighter
 
 
 def _shaded(corners: FloatArray) -> FloatArray:

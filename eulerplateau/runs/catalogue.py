@@ -10,11 +10,16 @@ from eulerplateau.branches import Entry, Plan, catalogue_at
 from eulerplateau.errors import SpecError
 from eulerplateau.film import FILM_LOADS
 from eulerplateau.mesh import write_whole
-from eulerplateau.runs.catalogue_table import COUNT_COLUMNS, Catalogue, read_counts
+from eulerplateau.runs.catalogue_table import (
+    COUNT_COLUMNS,
+    Catalogue,
+    catalogue_row,
+    read_counts,
+)
 from eulerplateau.runs.inputs import make_mesh
+from eulerplateau.runs.kinds import film_kind
 from eulerplateau.runs.loads import in_order
 from eulerplateau.runs.recording import Opening, recording
-from eulerplateau.runs.rows import CatalogueRow
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.runs.start import make_problem
 from eulerplateau.runs.table import table_content
@@ -34,18 +39,16 @@ def run_catalogue(
     raises ConflictError, or is replaced if `overwrite` is true.
     """
     started = time.perf_counter()
-    if spec.film.plane:
-        raise SpecError("film.plane", "should be false: equilibria leave the plane")
     if spec.loop.twist_ratio is not None:
         what = "should be absent: catalogues take mirror images for the same"
         raise SpecError("loop.twist_ratio", what)
-    spec.loop.refuse_thickness("catalogues")
     disk = make_mesh(spec)
     problem = make_problem(spec, disk)
     settings = spec.catalogue
     plan = Plan(settings.starts, settings.index, settings.distance, settings.seed)
+    row = catalogue_row(film_kind(None, None, diameter=spec.diameter))
     column = FILM_LOADS[spec.film.model].column
-    opening = Opening("catalogue", CatalogueRow, column, overwrite)
+    opening = Opening("catalogue", row, column, overwrite)
     counts: list[dict[str, float]] = []
     with recording(spec, problem, path, opening, started) as recorder:
         run = recorder.run

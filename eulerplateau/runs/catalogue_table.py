@@ -5,9 +5,12 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from eulerplateau.errors import OutputError
-from eulerplateau.runs.kinds import FILM
+from eulerplateau.runs.kinds import Kind
+from eulerplateau.runs.own_columns import OfContact, with_own
+from eulerplateau.runs.record import kind_of
 from eulerplateau.runs.rows import CatalogueRow
 from eulerplateau.runs.run_files import read_summary
 from eulerplateau.runs.table import read_rows
@@ -35,10 +38,17 @@ class Catalogue:
     before: str = ""
 
 
+def catalogue_row(kind: Kind) -> Any:
+    """Return the type of a catalogue's rows: of contact too, where a sweep's are."""
+    thick = issubclass(kind.row, OfContact)
+    return with_own(OfContact, CatalogueRow) if thick else CatalogueRow
+
+
 def read_catalogue(folder: Path) -> Catalogue:
     """Read a folder that `run_catalogue` has written; raises OutputError."""
-    column = FILM.load(read_summary(folder)).column
-    rows = read_rows(folder / "catalogue.csv", CatalogueRow, column)
+    about = read_summary(folder)
+    kind = kind_of(about)
+    rows = read_rows(folder / "catalogue.csv", catalogue_row(kind), kind.quantity(about))
     return Catalogue(folder, tuple(rows), read_counts(folder), 0.0, True)
 
 

@@ -1,5 +1,11 @@
+from .contact.keeping import CLOSED as CLOSED, Keeping as Keeping, Touching as Touching
 from .contact.record import contacts_at as contacts_at
-from .descent import Descent as Descent
+from .contact.separation import separated as separated
+from .descent import (
+    Descent as Descent,
+    change_of_energy as change_of_energy,
+    noise_of as noise_of,
+)
 from .equilibrium import (
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,
     RESOLVED_TURNING as RESOLVED_TURNING,

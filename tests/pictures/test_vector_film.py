@@ -89,7 +89,8 @@ def test_the_seam_is_straight_in_the_picture(tmp_path: Path) -> None:
     assert abs(np.mean(seam) - 200) <= 1
 
 
-def test_a_flat_disk_is_round_to_a_pixel(tmp_path: Path) -> None:
+def ink(path: Path, radius: float) -> tuple[int, int]:
+    """Pixels across and up of a disk of radius 0.16, in a field of 400 for 0.4."""
     from PIL import Image
 
     disk = mesh_of(*disk_points(12))
@@ -97,8 +98,18 @@ def test_a_flat_disk_is_round_to_a_pixel(tmp_path: Path) -> None:
     figure.set_layout_engine(None)
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     shape = Shape(0.16 * disk.x / np.hypot(*disk.x.T[:2]).max(), disk.triangles, disk.loop)
-    draw_film(ax, shape, EYE, (0.2, 0.2))
-    figure.savefig(tmp_path / "disk.png", dpi=200)
-    ink = np.asarray(Image.open(tmp_path / "disk.png").convert("L")) < 200
-    across, up = (int(ink.any(axis=axis).sum()) for axis in (0, 1))
+    draw_film(ax, shape, EYE, (0.2, 0.2), radius)
+    figure.savefig(path, dpi=200)
+    dark = np.asarray(Image.open(path).convert("L")) < 200
+    return int(dark.any(axis=0).sum()), int(dark.any(axis=1).sum())
+
+
+def test_a_flat_disk_is_round_to_a_pixel(tmp_path: Path) -> None:
+    across, up = ink(tmp_path / "disk.png", 0.0)
     assert abs(across - up) <= 1
+
+
+def test_a_thick_wire_is_drawn_as_thick_as_it_is(tmp_path: Path) -> None:
+    across, up = ink(tmp_path / "thick.png", 0.03)
+    assert abs(across - 1000 * 2 * (0.16 + 0.03)) <= 2
+    assert abs(up - across) <= 1

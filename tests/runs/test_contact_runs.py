@@ -11,17 +11,19 @@ import pytest
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import strands_of
 from eulerplateau.mesh import Shape, read_disk, read_vtp, write_mesh
-from eulerplateau.pictures import draw_branches
+from eulerplateau.pictures import draw_branches, draw_catalogue
 from eulerplateau.pictures.gallery.collection import collect
 from eulerplateau.pictures.gallery.document import page
 from eulerplateau.pictures.wire import read_wire
 from eulerplateau.runs import (
     Asked,
+    read_catalogue,
     read_run,
     run_branches,
     run_catalogue,
     run_locus,
     run_sweep,
+    shape_name,
 )
 from eulerplateau.runs.ensembles import load_ensemble, run_ensemble
 from eulerplateau.runs.rows import COLUMNS
@@ -204,15 +206,30 @@ def test_what_no_thick_loop_has_is_refused(
         spec(mesh, **sections)
 
 
-def test_catalogues_and_loci_are_refused_before_a_mesh_is_read(tmp_path: Path) -> None:
+def test_loci_are_refused_before_a_mesh_is_read(tmp_path: Path) -> None:
     thick = spec(tmp_path / "no such mesh.vtp")
     asked = Asked(tmp_path, 0, "load", None, None)
-    for attempt in (
-        lambda: run_catalogue(thick, tmp_path / "c"),
-        lambda: run_locus(thick, asked, tmp_path / "l"),
-    ):
-        with pytest.raises(SpecError, match=r"loop\.diameter: should be absent"):
-            attempt()
+    with pytest.raises(SpecError, match=r"loop\.diameter: should be absent"):
+        run_locus(thick, asked, tmp_path / "l")
+
+
+def test_a_catalogue_has_the_columns_and_the_shapes_their_contacts(
+    mesh: Path, swept: Path, tmp_path: Path
+) -> None:
+    settings = {"loads": [LOADS[1]], "starts": 2, "index": 1}
+    listed = run_catalogue(spec(mesh, catalogue=settings), tmp_path / "c")
+    assert read_catalogue(listed.folder).rows == listed.rows
+    header = (listed.folder / "catalogue.csv").read_text().splitlines()[0].split(",")
+    assert tuple(header[-4:]) == CONTACT
+    lowest, known = listed.rows[0], read_run(swept).rows[1]
+    assert lowest.first_guess == 0
+    for name in "energy", "contact_force", "crossing_angle":
+        assert getattr(lowest, name) == pytest.approx(getattr(known, name), rel=1e-9)
+    stored = read_vtp(listed.folder / shape_name(lowest.step))
+    one, other = stored.field_data["contact_points"].reshape(-1, 2, 3)[0]
+    assert np.linalg.norm(one - other) == pytest.approx(THICK, rel=1e-9)
+    assert stored.field_data["contact_forces"].sum() == lowest.contact_force
+    assert draw_catalogue(listed.folder)
 
 
 def test_branches_have_the_columns_and_say_where_strands_touch(

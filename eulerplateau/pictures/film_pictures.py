@@ -142,11 +142,13 @@ def _portraits(paths: Sequence[Sequence[Path]]) -> Portraits:
     views = own_views(every)
     eyes = [view.eye for view in views]
     half = room(every, eyes, max(radii))
-    looks = iter([{"eye": eye, "radius": r} for eye, r in zip(eyes, radii, strict=True)])
-    draw = [
-        [partial(draw_film, shape=shape, half=half, **next(looks)) for shape in shapes]
-        for shapes in films
-    ]
+    draws = iter(
+        [
+            partial(draw_film, shape=shape, eye=eye, half=half, radius=radius)
+            for shape, eye, radius in zip(every, eyes, radii, strict=True)
+        ]
+    )
+    draw = [[next(draws) for _ in shapes] for shapes in films]
     return Portraits(draw, half, note=_note(every, views), bar=_BAR)
 
 

@@ -28,8 +28,8 @@ _SEAM = 0.2
 _STRETCHES = 6
 # Part of its colour that a film keeps where it is seen edge-on.
 _DARKEST = 0.72
-# Part of a wire's width that is drawn lighter, and how much of its darkness that keeps.
-_MIDDLE, _DARK = 0.75, 0.6
+# Part of a thick wire's width that is drawn lighter, with so much of its darkness.
+_MIDDLE, _LIGHT = 0.75, tuple(1 - 0.6 * (1 - part) for part in LOOP)
 
 
 def room(
@@ -74,7 +74,7 @@ def draw_film(
         order[1:] += m * (order[1:] == order[:-1])
         outlines[n:] = [*_bands(ends, radius), *_bands(ends, _MIDDLE * radius)]
         widths = np.repeat([_SEAM, 0.0, _SEAM], [n, m, m])
-        colours += [_lighter(LOOP)] * m
+        colours += [_LIGHT] * m
     ax.add_collection(
         PolyCollection(
             [outlines[place][:, :2] for place in order],
@@ -165,12 +165,6 @@ def _tube(ends: FloatArray, radius: float) -> FloatArray:
     aside = np.concatenate([across, np.zeros((len(ends), 1))], axis=1)
     a, b, c, d = start - aside, end - aside, end + aside, start + aside
     return np.concatenate([np.stack(half, axis=1) for half in ((a, b, c), (a, c, d))])
-
-
-def _lighter(colour: FloatArray) -> FloatArray:
-    """Return a colour (3,) mixed with white."""
-    lighter: FloatArray = 1 - _DARK * (1 - np.asarray(colour))
-    return lighter
 
 
 def _shaded(corners: FloatArray) -> FloatArray:

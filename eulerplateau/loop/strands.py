@@ -160,12 +160,13 @@ class Strands:
 
     def unlike(self, gaps: Gaps, others: Gaps, edges: float = _BESIDE) -> BoolArray:
         """Return which of `gaps` (k,) are farther from others than that, on a strand."""
-        reach = edges * self.loop.rest_lengths.max()
         whole = self.knots[-1]
 
         def near(places: FloatArray, other: FloatArray) -> BoolArray:
             off = np.abs(places[:, None] - other) % whole
-            close: BoolArray = np.minimum(off, whole - off) < reach
+            edge = np.searchsorted(self.knots, places % whole, side="right") - 1
+            reach = edges * self.loop.rest_lengths[np.minimum(edge, len(self.knots) - 2)]
+            close: BoolArray = np.minimum(off, whole - off) < reach[:, None]
             return close
 
         same = near(gaps.s, others.s) & near(gaps.t, others.t)

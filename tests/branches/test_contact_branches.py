@@ -18,7 +18,7 @@ from eulerplateau.branches import (
     film_point,
     point_near,
 )
-from eulerplateau.branches.conformal import opening_load, thick_eight
+from eulerplateau.branches.conformal import opening_load, splitting_load, thick_eight
 from eulerplateau.branches.continuation import Kink, Place, advance, next_place
 from eulerplateau.branches.kinks import kink_between, margins
 from eulerplateau.exact.planar import planar_film, thresholds
@@ -272,3 +272,25 @@ def test_the_eight_opens_where_the_one_without_a_mesh_does(
         assert kink.before.direction.rate < 0 < kink.after.direction.rate
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
     assert errors[2] == pytest.approx(errors[0], rel=0.05)
+
+
+@pytest.mark.slow
+def test_the_eight_s_contact_splits_where_the_one_without_a_mesh_does() -> None:
+    diameter = 0.05
+    film, exact = thick_eight(3800.0, diameter), splitting_load(diameter)
+    assert exact is not None
+    errors = []
+    for edges, shift in (60, 0.0), (120, 0.0), (120, 0.3):
+        mesh = round_disk(edges)
+        control = replace(CONTROL, window=(3000.0, 4800.0), unit=4800.0)
+        problem = Problem(mesh, "area", diameter=diameter)
+        start = film_point(eight_on(mesh, film, shift), problem, control)
+        found = next(
+            at.kink.before.value
+            for at in places(start, 5, control)
+            if at.kink is not None and at.kink.what == "splits"
+        )
+        errors.append(found - exact)
+    # The load without a mesh is good to about 1.
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)
+    assert abs(errors[2] - errors[1]) < 0.35 * abs(errors[1])

@@ -63,8 +63,8 @@ def opening_load(
     twisted film as wide. That is also the one of a rod turned by as many turns as the film
     writhes, which has no twist; from there films whose strands touch without force are
     followed in the turns, their load an unknown, in seconds. None where Newton's method
-    finds none on the way, or strands come to lie along each other. Raises SpecError for wrong parameters, and BranchError where
-    harmonics do not resolve the twisted film.
+    finds none on the way, or strands come to lie along each other. Raises SpecError for
+    wrong parameters, and BranchError where harmonics do not resolve the twisted film.
     """
     checked(_MIDDLE, twist_ratio, link)
     free = twisted_film(diameter)

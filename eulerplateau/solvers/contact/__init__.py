@@ -2,6 +2,7 @@
 
     search.py   from a start to a minimum, of every film, and what is said of its contacts
     descent.py  downhill on loops whose strands touch here and there, and overlap nowhere
+    program.py  the step that tells which gaps are closed: a quadratic program
     keeping.py  which gaps are closed, at points or along each other
     record.py    what is said of contacts
     separation.py  how strands that overlap are parted before

@@ -120,14 +120,18 @@ class Keeping:
 
         Strands that come to lie along each other are held there, and touch at no point.
         """
-        along = gaps.slides & (self.strands.parting(x, gaps) < _FLAT)
-        if along.any():
+        flat = gaps.slides & (self.strands.parting(x, gaps) < _FLAT)
+        if flat.any():
             # Where they were before: along each other they are nearest anywhere.
-            laid = laid.joined(gaps[along])
-            gaps = replace(gaps, slides=gaps.slides & ~along)
+            gaps = replace(gaps, slides=gaps.slides & ~flat)
             radius = max(radius, FIRST_RADIUS)
-        gaps, _ = self.strands.at(x, gaps)
-        gaps, tensions = self._pushing(x, gaps[self.strands.distinct(gaps)])
+        closed, _ = self.strands.at(x, gaps)
+        closed = closed[self.strands.distinct(closed)]
+        gaps, tensions = self._pushing(x, closed)
+        # The places of one contact are an edge from each other, old ones as well.
+        laid = laid.joined(closed[~closed.slides])
+        laid = laid[self.strands.unlike(laid, gaps[~gaps.slides], ALONG)]
+        laid = laid[self.strands.distinct(laid)]
         held = with_gaps_held(self.energy, self.strands, gaps)
         model = tangent_model(held, x, tensions)
         return Touching(model, gaps, laid, radius, iteration, changes)

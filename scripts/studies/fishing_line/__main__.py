@@ -6,11 +6,13 @@ from pathlib import Path
 
 import click
 
+from eulerplateau.branches.conformal import opening_load
 from eulerplateau.threads import one_thread
 from scripts.studies.common import ROOT, machine, markdown_table
 from scripts.studies.fishing_line.cycle import Cycle
 from scripts.studies.fishing_line.figures import draw_loop
 from scripts.studies.fishing_line.loads import coefficients, openings
+from scripts.studies.fishing_line.racket import racket_table
 from scripts.studies.fishing_line.welded import disk_yields, welded_table
 
 
@@ -49,8 +51,13 @@ def main(
         for cycle in cycles:
             click.echo(f"d = {cycle.diameter:g}")
             click.echo(markdown_table(cycle.table(), 0))
+        for folder in runs:
+            click.echo(f"{folder.name}: where it touches at several places")
+            click.echo(markdown_table(racket_table(folder), 1))
         for link in (0.5, 1.0):
-            click.echo(f"disk of Lk = {link:g} yields at {disk_yields(2 / 3, link):.2f}")
+            yields, opens = disk_yields(2 / 3, link), opening_load(0.01, 2 / 3, link)
+            click.echo(f"Lk = {link:g}: the disk yields at {yields:.2f}, strands of a")
+            click.echo(f"line of d = 0.01 touch without force at {opens:.2f}")
         if welded:
             click.echo(markdown_table(welded_table(welded), 0))
         out.mkdir(parents=True, exist_ok=True)

@@ -64,10 +64,11 @@ class Cycle:
 
     def _is_known(self, load: float) -> bool:
         """Return whether a row touches in one point where harmonics resolve that."""
-        rows = (way[load] for way in (self.up, self.down) if load in way)
+        rows = [way[load] for way in (self.up, self.down) if load in way]
+        if not any(row.contacts == 1 for row in rows):
+            return False
         angle = degrees(2 * abs(flat_eight(load).angle))
-        resolved = crowding(self.diameter, angle) > _CROWDED
-        return resolved and any(row.contacts == 1 for row in rows)
+        return crowding(self.diameter, angle) > _CROWDED
 
     def table(self) -> Iterator[list[str]]:
         """Yield a head, then by load: states up and down, the film, a mesh's errors."""
@@ -118,4 +119,4 @@ def _state(row: Any) -> str:
         return str(row.status.value)
     if row.contacts == 0:
         return "disk" if row.sigma_hat < BUCKLING else "two lobes"
-    return "eight" if row.contacts == 1 else f"{row.contacts} contacts"
+    return "eight" if row.contacts == 1 else f"{row.contacts} places"

@@ -1,0 +1,54 @@
+"""Strands that wind round each other at high loads: the racket on a mesh."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from eulerplateau.loop import strands_of
+from eulerplateau.solvers import Equilibrium, Problem, solve
+from tests.solvers.test_contact import crossed, disk
+
+DIAMETER, LOADS = 0.05, (2000.0, 3000.0, 4000.0, 5000.0, 6000.0)
+
+
+@cache
+def wound() -> tuple[Equilibrium, ...]:
+    """The eight loaded until its strands touch along a stretch of them."""
+    mesh, found = disk(12), []
+    problem, start = Problem(mesh, "area", diameter=DIAMETER), crossed(mesh)
+    for load in LOADS:
+        found.append(solve(problem, load, found[-1] if found else start))
+    return tuple(found)
+
+
+@pytest.mark.parametrize("row", range(1, len(LOADS)))
+def test_strands_come_to_wind_round_each_other_in_tens_of_steps(row: int) -> None:
+    found = wound()[row]
+    contacts = found.contacts
+    assert found.is_minimum
+    assert found.iterations < 60
+    assert contacts is not None
+    assert contacts.forces.min() > 0.0
+    assert contacts.force > 5 / 4 * wound()[row - 1].contacts.force
+    # Between places held an edge from each other the curve bends by as much.
+    strands, x = strands_of(Problem(disk(12), diameter=DIAMETER).loop), found.shape.x_loop
+    widths = strands.at(x, contacts.places)[1]
+    np.testing.assert_allclose(widths, 0.0, atol=1e-11)
+    assert contacts.smallest_gap > -2e-3 * DIAMETER
+
+
+def test_wound_strands_push_with_the_energy_s_slope_in_the_diameter() -> None:
+    found = wound()[-1]
+    assert found.contacts is not None
+    assert len(found.contacts) > 4
+
+    def energy(diameter: float) -> float:
+        near = solve(Problem(disk(12), "area", diameter=diameter), LOADS[-1], found)
+        assert near.is_minimum
+        return near.energy
+
+    slope = (energy(DIAMETER + 1e-4) - energy(DIAMETER - 1e-4)) / 2e-4
+    assert found.contacts.force == pytest.approx(slope, rel=1e-3)

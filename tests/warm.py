@@ -11,7 +11,7 @@ import numpy as np
 
 from eulerplateau.cells import Cell, regular_sites, solve_cell, strands_near
 from eulerplateau.exact import relax, relax_in_plane
-from eulerplateau.mesh.crossings import self_intersections
+from eulerplateau.mesh import film_touches
 from eulerplateau.solvers import SOLVERS, Problem, solve
 from tests.helpers import shapes
 
@@ -29,7 +29,7 @@ def warm() -> None:
         solve(rod, 500.0, start, max_iterations=8)
     thick = Problem(mesh, "area", diameter=0.05)
     solve(thick, 500.0, start, max_iterations=8)
-    self_intersections(start, mesh.triangles)
+    film_touches(mesh.shape.moved(start), 0.01)
     angle = 2 * np.pi * np.arange(200) / 200
     ellipse = np.stack([1.3 * np.cos(angle), np.sin(angle)], axis=1)
     relax_in_plane(ellipse, 1600.0, 16, 2)

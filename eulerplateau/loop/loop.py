@@ -189,7 +189,7 @@ def largest_turning(x_loop: FloatArray) -> float:
 
 def differences(rows: FloatArray) -> FloatArray:
     """Return D rows: row v + 1 minus row v, cyclic (np.roll costs more than the work)."""
-    result = np.empty_like(rows)
+    result = np.empty_like(rows, order="C")
     np.subtract(rows[1:], rows[:-1], out=result[:-1])
     np.subtract(rows[0], rows[-1], out=result[-1])
     return result
@@ -197,7 +197,7 @@ def differences(rows: FloatArray) -> FloatArray:
 
 def backward_differences(rows: FloatArray) -> FloatArray:
     """Return -D^T rows: row v minus row v - 1, cyclic."""
-    result = np.empty_like(rows)
+    result = np.empty_like(rows, order="C")
     np.subtract(rows[1:], rows[:-1], out=result[1:])
     np.subtract(rows[0], rows[-1], out=result[0])
     return result

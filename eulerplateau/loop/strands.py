@@ -232,7 +232,9 @@ class Strands:
         return replace(gaps, s=rows[:, 0], t=rows[:, 1]), rows[:, 2] - self.diameter
 
     def _followed(self, pieces: FloatArray, gaps: Gaps) -> tuple[FloatArray, FloatArray]:
-        rows = settle_each(pieces, self.knots, gaps.s, gaps.t, gaps.slides)
+        # Columns of a table would be compiled for a second time.
+        s, t = np.ascontiguousarray(gaps.s), np.ascontiguousarray(gaps.t)
+        rows = settle_each(pieces, self.knots, s, t, gaps.slides)
         return rows[:, :3], rows[:, 3]
 
     def between(self, x: FloatArray, gaps: Gaps) -> Between:

@@ -79,7 +79,8 @@ def _near(
         for e in range(n_b):
             v, w = loop[e], loop[(e + 1) % n_b]
             if _box_is_near(low, high, x, v, w, reach[e]):
-                found[e, t] = _distance(corners, x[v], x[w]) <= reach[e]
+                apart = _distance(corners, _row(x, v), _row(x, w))
+                found[e, t] = apart <= reach[e]
     return found
 
 
@@ -96,63 +97,99 @@ def _box_is_near(
     return True
 
 
+# Triples of numbers, not arrays: numba compiles those several times as fast.
+Vector = tuple[float, float, float]
+
+
 @njit(cache=True)
-def _distance(corners: FloatArray, p: FloatArray, q: FloatArray) -> float:
+def _row(x: FloatArray, i: int) -> Vector:
+    return x[i, 0], x[i, 1], x[i, 2]
+
+
+@njit(cache=True)
+def _sum(a: Vector, factor: float, b: Vector) -> Vector:
+    return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]
+
+
+@njit(cache=True)
+def _dot(a: Vector, b: Vector) -> float:
+    product: float = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return product
+
+
+@njit(cache=True)
+def _cross(a: Vector, b: Vector) -> Vector:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+@njit(cache=True)
+def _distance(corners: FloatArray, p: Vector, q: Vector) -> float:
     """Return the distance of a triangle (3, 3) from an edge p q (Ericson 2005, 5.1)."""
     if _through(corners, p, q):
         return 0.0
     least = min(_over(corners, p), _over(corners, q))
     for i in range(3):
-        least = min(least, _of_edges(corners[i], corners[(i + 1) % 3], p, q))
+        a, b = _row(corners, i), _row(corners, (i + 1) % 3)
+        least = min(least, _of_edges(a, b, p, q))
     return least
 
 
 @njit(cache=True)
-def _normal(corners: FloatArray) -> FloatArray:
-    return np.cross(corners[1] - corners[0], corners[2] - corners[0])
+def _side(corners: FloatArray, i: int) -> Vector:
+    return _sum(_row(corners, (i + 1) % 3), -1.0, _row(corners, i))
 
 
 @njit(cache=True)
-def _inside(corners: FloatArray, normal: FloatArray, point: FloatArray) -> bool:
+def _normal(corners: FloatArray) -> Vector:
+    return _cross(_side(corners, 0), _sum(_row(corners, 2), -1.0, _row(corners, 0)))
+
+
+@njit(cache=True)
+def _inside(corners: FloatArray, normal: Vector, point: Vector) -> bool:
     """Whether a point lies over a triangle."""
     for i in range(3):
-        side = corners[(i + 1) % 3] - corners[i]
-        if np.dot(np.cross(side, point - corners[i]), normal) < 0.0:
+        beyond = _cross(_side(corners, i), _sum(point, -1.0, _row(corners, i)))
+        if _dot(beyond, normal) < 0.0:
             return False
     return True
 
 
 @njit(cache=True)
-def _through(corners: FloatArray, p: FloatArray, q: FloatArray) -> bool:
+def _through(corners: FloatArray, p: Vector, q: Vector) -> bool:
     """Whether an edge p q passes through a triangle."""
-    normal = _normal(corners)
-    above, below = np.dot(p - corners[0], normal), np.dot(q - corners[0], normal)
+    normal, first = _normal(corners), _row(corners, 0)
+    above = _dot(_sum(p, -1.0, first), normal)
+    below = _dot(_sum(q, -1.0, first), normal)
     if above * below >= 0.0:
         return False
-    return _inside(corners, normal, p + above / (above - below) * (q - p))
+    return _inside(corners, normal, _sum(p, above / (above - below), _sum(q, -1.0, p)))
 
 
 @njit(cache=True)
-def _over(corners: FloatArray, point: FloatArray) -> float:
+def _over(corners: FloatArray, point: Vector) -> float:
     """Return how high a point lies over a triangle; infinite if it is not over it."""
     normal = _normal(corners)
-    length = np.sqrt(np.dot(normal, normal))
+    length = np.sqrt(_dot(normal, normal))
     if length == 0.0 or not _inside(corners, normal, point):
         return np.inf
-    return float(abs(np.dot(point - corners[0], normal)) / length)
+    return float(abs(_dot(_sum(point, -1.0, _row(corners, 0)), normal)) / length)
 
 
 @njit(cache=True)
-def _of_edges(a: FloatArray, b: FloatArray, p: FloatArray, q: FloatArray) -> float:
+def _of_edges(a: Vector, b: Vector, p: Vector, q: Vector) -> float:
     """Return the distance of two edges a b and p q."""
-    u, v, w = b - a, q - p, a - p
-    uu, uv, vv = np.dot(u, u), np.dot(u, v), np.dot(v, v)
-    uw, vw = np.dot(u, w), np.dot(v, w)
+    u, v, w = _sum(b, -1.0, a), _sum(q, -1.0, p), _sum(a, -1.0, p)
+    uu, uv, vv = _dot(u, u), _dot(u, v), _dot(v, v)
+    uw, vw = _dot(u, w), _dot(v, w)
     determinant = uu * vv - uv * uv
     s = 0.5
     if determinant > 1e-12 * uu * vv:
         s = min(max((uv * vw - vv * uw) / determinant, 0.0), 1.0)
     t = min(max((uv * s + vw) / vv, 0.0), 1.0)
     s = min(max((uv * t - uw) / uu, 0.0), 1.0)
-    apart = w + s * u - t * v
-    return float(np.sqrt(np.dot(apart, apart)))
+    apart = _sum(_sum(w, s, u), -t, v)
+    return float(np.sqrt(_dot(apart, apart)))

@@ -1,15 +1,25 @@
-"""What workers are given to do by tests; it loads next to nothing."""
+"""What workers are given to do by tests, or this process for them; it loads little."""
 
 from __future__ import annotations
 
 import os
 import signal
 import time
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import TypeVar
 
 from eulerplateau.interruption import Interrupted, heed
 
 Task = tuple[str, Path]
+T, R = TypeVar("T"), TypeVar("R")
+
+
+def in_turn(
+    function: Callable[[T], R], tasks: Iterable[T], count: int
+) -> Iterator[tuple[T, R]]:
+    """Carry out tasks in this process, in place of workers."""
+    return ((task, function(task)) for task in tasks)
 
 
 def noted(task: Task) -> tuple[str, int]:

@@ -18,6 +18,7 @@ from eulerplateau.runs.ensembles import running
 from eulerplateau.settings import load_toml
 from tests.helpers.command import run_here
 from tests.helpers.pages import DOCS, EXAMPLES, PAGES, ROOT, blocks
+from tests.helpers.tasks import in_turn
 
 TUTORIAL = DOCS / "tutorial.md"
 
@@ -66,11 +67,6 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, coarse_pictures: None
             (tmp_path / named(block)).write_text(block)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def in_turn(function, tasks, count):
-    """Carry out tasks in this process, in place of workers."""
-    return ((task, function(task)) for task in tasks)
 
 
 def run(*arguments: str) -> None:

@@ -21,6 +21,7 @@ from eulerplateau.runs.ensembles import (
     run_ensemble,
     running,
 )
+from tests.helpers.tasks import in_turn
 
 FILM = """
 [mesh]
@@ -51,10 +52,6 @@ def oval_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def home(tmp_path: Path, oval_file: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a mesh, where cases are carried out by this process."""
-
-    def in_turn(function, tasks, count):
-        return ((task, function(task)) for task in tasks)
-
     monkeypatch.setattr(running, "in_workers", in_turn)
     shutil.copy(oval_file, tmp_path / "oval.vtp")
     return tmp_path

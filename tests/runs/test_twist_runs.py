@@ -13,11 +13,12 @@ from eulerplateau.loop import CurvedRod, Loop, directors
 from eulerplateau.mesh import Shape, read_disk, read_vtp, write_mesh
 from eulerplateau.pictures.wire import read_wire
 from eulerplateau.runs import read_run, run_branches, run_sweep
-from eulerplateau.runs.ensembles import load_ensemble, run_ensemble
+from eulerplateau.runs.ensembles import load_ensemble, run_ensemble, running
 from eulerplateau.runs.rows import COLUMNS
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.settings import validate
 from tests.helpers import shapes
+from tests.helpers.tasks import in_turn
 
 TWIST = ("twist_energy", "writhe", "link", "twist_moment")
 
@@ -85,7 +86,11 @@ def test_branches_of_a_turned_loop_say_nothing_of_mirrors(
     assert "inversion" not in told
 
 
-def test_an_ensemble_over_link_joins_in_one_table(mesh: Path, tmp_path: Path) -> None:
+def test_an_ensemble_over_link_joins_in_one_table(
+    mesh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By this process; tests/runs/test_contact_runs.py has one carried out by workers."""
+    monkeypatch.setattr(running, "in_workers", in_turn)
     (tmp_path / "e.toml").write_text(
         f'[mesh]\nfile = "{mesh}"\n[loop]\ntwist_ratio = 0.75\n'
         "[sweep]\nloads = [300]\n[grid]\nloop.link = [0.0, 0.2]\n"

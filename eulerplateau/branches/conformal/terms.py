@@ -101,7 +101,7 @@ class Unknowns:
     basis: Basis
     scale: FloatArray
     frame_scale: FloatArray
-    _known: list[tuple[FloatArray, SmoothLoop]] = field(default_factory=list, repr=False)
+    _known: dict[bytes, SmoothLoop] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, basis: Basis, frame_waves: FloatArray) -> Unknowns:
@@ -115,7 +115,7 @@ class Unknowns:
     def beside(cls, basis: Basis, loop: SmoothLoop) -> Unknowns:
         """Return those of displacements of another symmetry from a loop: it is at x = 0."""
         found, still = cls.of(basis, np.zeros(0)), np.zeros((basis.size, 1))
-        found._known.append((still, LoopBeside(basis, still[:, 0], loop)))
+        found._known[still.tobytes()] = LoopBeside(basis, still[:, 0], loop)
         return found
 
     @property
@@ -131,11 +131,13 @@ class Unknowns:
 
     def loop(self, x: FloatArray) -> SmoothLoop:
         """Return the loop of x (size + m, 1)."""
-        for place, known in self._known:
-            if np.array_equal(place, x):
-                return known
-        found = SmoothLoop(self.basis, self.scale * x[: self.basis.size, 0])
-        self._known[:] = [(x.copy(), found), *self._known[: _KEPT - 1]]
+        place = x.tobytes()
+        found = self._known.get(place)
+        if found is None:
+            while len(self._known) >= _KEPT:
+                del self._known[next(iter(self._known))]
+            found = SmoothLoop(self.basis, self.scale * x[: self.basis.size, 0])
+            self._known[place] = found
         return found
 
     def others(self, x: FloatArray) -> FloatArray:
@@ -184,7 +186,7 @@ class SmoothBending(Term):
     def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
         """Return the second derivative times a step (size, 1)."""
         u = self.unknowns
-        return u.product(bending_blocks(u.loop(x).curve), step)
+        return u.product(bending_blocks(u.basis, u.loop(x).curve), step)
 
 
 @dataclass(frozen=True)
@@ -243,7 +245,7 @@ class SmoothTwist(EvenTwist):
     def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
         """Return the second derivative times a step (size, 1)."""
         u, slope = self.unknowns, self.slope(x)
-        bent = u.product(writhe_blocks(u.loop(x).curve), step)
+        bent = u.product(writhe_blocks(u.basis, u.loop(x).curve), step)
         stiff = 4 * math.pi**2 * self.gamma * float(np.vdot(slope, step)) * slope
         return stiff - 2 * math.pi * self.moment(x) * bent
 

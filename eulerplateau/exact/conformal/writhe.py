@@ -21,7 +21,8 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.conformal.basis import Basis, Curve
-from eulerplateau.exact.conformal.energy import Blocks, assemble
+from eulerplateau.exact.conformal.energy import Blocks, gradient
+from eulerplateau.exact.conformal.integrand_kernels import writhe_second, writhe_slopes
 
 # Axes that are tried: through the corners, edges and faces of a cube.
 _AXES = np.array([axis for axis in product((-1, 0, 1), repeat=3) if any(axis)])
@@ -40,9 +41,7 @@ def writhe_modulo_two(curve: Curve) -> float:
 
 def writhe_gradient(basis: Basis, curve: Curve) -> FloatArray:
     """Return the gradient (size,) of the writhe, in the columns of `basis`."""
-    u = (curve.x1**2).sum(axis=1)[:, None]
-    by_x1 = np.cross(curve.x2, curve.x1) / (2 * pi * u**1.5)
-    return assemble(basis, by_x1, 1)
+    return gradient(basis, writhe_slopes(*curve.first(basis.points)[1:]))
 
 
 def writhe_hessian(basis: Basis, curve: Curve) -> FloatArray:
@@ -51,14 +50,9 @@ def writhe_hessian(basis: Basis, curve: Curve) -> FloatArray:
     `basis` may have another symmetry than the loop: then this is the block of the
     displacements that have it.
     """
-    return writhe_blocks(curve).matrix(basis)
+    return writhe_blocks(basis, curve).matrix(basis)
 
 
-def writhe_blocks(curve: Curve) -> Blocks:
+def writhe_blocks(basis: Basis, curve: Curve) -> Blocks:
     """Return the second derivative of what is integrated."""
-    p, u = curve.x1, (curve.x1**2).sum(axis=1)[:, None, None]
-    across = np.cross(curve.x2, p)
-    both = across[:, :, None] * p[:, None, :]
-    pp = -1.5 * (both + both.transpose(0, 2, 1)) / u**2.5
-    pq = -0.5 * np.cross(np.eye(3), p[:, None, :]) / u**1.5
-    return Blocks(pp / (2 * pi), pq / (2 * pi), None)
+    return Blocks(writhe_second(*curve.first(basis.points)[1:]))

@@ -28,12 +28,12 @@ from eulerplateau.exact.conformal import (
     length_hessian,
     loop_length,
     precondition,
+    smooth_writhe,
     writhe_blocks,
     writhe_gradient,
     writhe_hessian,
-    writhe_modulo_two,
 )
-from eulerplateau.loop import EdgeTurns, EvenTwist, Term, polygon_writhe
+from eulerplateau.loop import EdgeTurns, EvenTwist, Term
 
 # Loops that are kept: where a step begins, and where it may end.
 _KEPT = 4
@@ -53,9 +53,8 @@ class SmoothLoop:
 
     @cached_property
     def writhe(self) -> float:
-        """Wr: its even part by all pairs of edges of a polygon on the loop."""
-        found = writhe_modulo_two(self.curve)
-        return found + 2 * round((polygon_writhe(self.curve.x) - found) / 2)
+        """Wr."""
+        return smooth_writhe(self.curve)
 
     @cached_property
     def crossing(self) -> Crossing:

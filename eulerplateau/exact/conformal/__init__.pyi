@@ -78,8 +78,8 @@ from .strands import (
     nearest_strands as nearest_strands,
 )
 from .writhe import (
+    smooth_writhe as smooth_writhe,
     writhe_blocks as writhe_blocks,
     writhe_gradient as writhe_gradient,
     writhe_hessian as writhe_hessian,
-    writhe_modulo_two as writhe_modulo_two,
 )

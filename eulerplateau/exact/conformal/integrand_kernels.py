@@ -104,6 +104,47 @@ def writhe_second(x1: FloatArray, x2: FloatArray) -> FloatArray:
 
 
 @njit(cache=True)
+def tangent_area(x1: FloatArray, x2: FloatArray, axis: FloatArray) -> float:
+    """Return the mean of (e x t) . t' / (1 + e . t), e the axis (3,) and t the tangent."""
+    total = 0.0
+    for i in range(len(x1)):
+        u, _, _ = _products(x1[i], x2[i])
+        along, turned = 0.0, 0.0
+        for a in range(3):
+            b, c = (a + 1) % 3, (a + 2) % 3
+            along += axis[a] * x1[i, a]
+            turned += axis[a] * (x1[i, b] * x2[i, c] - x1[i, c] * x2[i, b])
+        total += turned / (u + math.sqrt(u) * along)
+    return total / len(x1)
+
+
+@njit(cache=True)
+def crossings(seen: FloatArray) -> int:
+    """Return the signed crossings of a closed polygon (n, 3) seen along z.
+
+    Right-handed ones are positive.
+    """
+    n, count = len(seen), 0
+    x, y, z = seen[:, 0], seen[:, 1], seen[:, 2]
+    for i in range(n - 2):
+        px, py, pz = x[i + 1] - x[i], y[i + 1] - y[i], z[i + 1] - z[i]
+        before = px * (y[i + 2] - y[i]) - py * (x[i + 2] - x[i])
+        for j in range(i + 2, n if i > 0 else n - 1):
+            k = (j + 1) % n
+            after = px * (y[k] - y[i]) - py * (x[k] - x[i])
+            if (before > 0) != (after > 0):  # edge j crosses the line of edge i
+                there = before / (before - after)
+                qx, qy, qz = x[k] - x[j], y[k] - y[j], z[k] - z[j]
+                along = px * (x[j] + there * qx - x[i]) + py * (y[j] + there * qy - y[i])
+                here = along / (px * px + py * py)
+                if 0 <= here < 1:
+                    above = z[i] + here * pz > z[j] + there * qz
+                    count += 1 if (after > before) == above else -1
+            before = after
+    return count
+
+
+@njit(cache=True)
 def assemble(
     slopes: FloatArray, weights: FloatArray, columns: FloatArray, starts: IntArray
 ) -> FloatArray:

@@ -188,7 +188,7 @@ def _arm(
             return
         if after.corrections <= _EASY:
             step = min(1.5 * step, control.largest_step)
-        ahead, before = Ahead.after(before, after), resolution.resolved(after)
+        ahead, before = ahead.then(after), resolution.resolved(after)
         if before is not after:
             ahead = Ahead.straight(before)
             home = tuple(resolution.carried(motion, after, before) for motion in home)

@@ -9,15 +9,9 @@ import pytest
 from scipy.special import ellipj
 
 from eulerplateau.errors import SpecError
-from eulerplateau.exact.conformal.basis import (
-    GENERAL,
-    HALF_TURNS,
-    TWISTED,
-    Basis,
-    Family,
-    make_basis,
-)
+from eulerplateau.exact.conformal.basis import Basis, make_basis
 from eulerplateau.exact.conformal.energy import bending_hessian, length_hessian, terms
+from eulerplateau.exact.conformal.families import GENERAL, HALF_TURNS, TWISTED, Family
 from eulerplateau.exact.conformal.grading import Grading, dirichlet_form
 
 CROWDINGS = (1.0, 0.3, 1e-2, 1e-4, 1e-8)

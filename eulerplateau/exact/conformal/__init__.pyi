@@ -1,11 +1,6 @@
 from .basis import (
-    GENERAL as GENERAL,
-    HALF_TURNS as HALF_TURNS,
-    PLANAR as PLANAR,
-    TWISTED as TWISTED,
     Basis as Basis,
     Curve as Curve,
-    Family as Family,
     finer_bases as finer_bases,
     make_basis as make_basis,
     waves as waves,
@@ -39,6 +34,13 @@ from .equilibrium import (
     correct as correct,
     disk as disk,
     precondition as precondition,
+)
+from .families import (
+    GENERAL as GENERAL,
+    HALF_TURNS as HALF_TURNS,
+    PLANAR as PLANAR,
+    TWISTED as TWISTED,
+    Family as Family,
 )
 from .gauge import (
     gauge_fields as gauge_fields,

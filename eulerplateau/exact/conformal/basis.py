@@ -12,6 +12,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
+from eulerplateau.exact.conformal.families import HALF_TURNS, TWISTED, Family
 from eulerplateau.exact.conformal.grading import Grading
 
 # The bending's integrand is no trigonometric polynomial: points per harmonic.
@@ -21,41 +22,6 @@ _TAIL = 0.1
 # How far a basis is refined.
 MOST_HARMONICS = 288
 _MOST_CROWDED = 1e-12
-
-Harmonics = tuple[tuple[str, int], ...]  # ("cos" or "sin", parity of k)
-_BOTH: Harmonics = (("cos", 0), ("cos", 1), ("sin", 0), ("sin", 1))
-
-
-@dataclass(frozen=True)
-class Family:
-    """A symmetry of loops: the harmonics in each of the coordinates x, y and z."""
-
-    name: str
-    harmonics: tuple[Harmonics, Harmonics, Harmonics]
-
-    def within(self, other: Family) -> bool:
-        """Return whether all its loops, or displacements, are of another family too."""
-        pairs = zip(self.harmonics, other.harmonics, strict=True)
-        return all(set(mine) <= set(theirs) for mine, theirs in pairs)
-
-
-def _family(name: str, x: str, y: str, z: str) -> Family:
-    parts = tuple(((c.split()[0], int(c.split()[1])),) if c else () for c in (x, y, z))
-    return Family(name, (parts[0], parts[1], parts[2]))
-
-
-# Two mirror lines in the plane z = 0 (D2h), and the three half-turns about the axes (D2):
-# about x, phi -> -phi; about z, phi -> phi + pi; about y, phi -> pi - phi.
-PLANAR = _family("planar", "cos 1", "sin 1", "")
-TWISTED = _family("all half-turns", "cos 1", "sin 1", "sin 0")
-# Displacements that keep one of the half-turns and break the others.
-ABOUT_X = _family("half-turn about x", "cos 0", "sin 0", "sin 1")
-ABOUT_Y = _family("half-turn about y", "sin 0", "cos 0", "cos 1")
-ABOUT_Z = _family("half-turn about z", "sin 1", "cos 1", "cos 0")
-GENERAL = Family("no symmetry", (_BOTH, _BOTH, _BOTH))
-# Every displacement of a film of TWISTED or PLANAR is a sum of these, and its second
-# variation mixes none of them.
-HALF_TURNS = (TWISTED, ABOUT_X, ABOUT_Y, ABOUT_Z)
 
 
 class Curve(NamedTuple):
@@ -174,7 +140,7 @@ class Basis:
 
     @cached_property
     def stacked(self) -> FloatArray:
-        """The columns, and their two derivatives, at the first `points`: (3, points, size)."""
+        """Columns and their two derivatives at the first `points`: (3, points, size)."""
         n, parts = self.points, self.matrices
         orders = (np.hstack([part[order][:n] for part in parts]) for order in range(3))
         return np.stack(tuple(orders))

@@ -1,4 +1,4 @@
-"""Compiled loops of energy.py and writhe.py: what is integrated along a loop, differentiated.
+"""Compiled loops of energy.py and writhe.py: integrands along a loop, differentiated.
 
 Point by point, in x' = p and x'' = q. With u = |p|^2, v = |q|^2, w = p.q the integrands are
 

@@ -52,7 +52,7 @@ def smooth_writhe(curve: Curve) -> float:
 
 
 def _turns(seen: np.ndarray) -> int:
-    """Return how often the edges of a polygon (n,) in the complex plane turn to the left."""
+    """Return how often the edges of a polygon (n,) of complex numbers turn left."""
     edges = np.diff(seen, append=seen[:1])
     return round(float(np.angle(np.roll(edges, -1) / edges).sum()) / (2 * pi))
 

@@ -13,7 +13,11 @@ from .film_family import (
     equilibrium as equilibrium,
     likeness_of as likeness_of,
 )
-from .film_locus import Known as Known, film_at as film_at, locus_of_film as locus_of_film
+from .film_locus import (
+    Known as Known,
+    energy_at as energy_at,
+    locus_of_film as locus_of_film,
+)
 from .films import (
     FilmPoint as FilmPoint,
     equilibrium_near as equilibrium_near,

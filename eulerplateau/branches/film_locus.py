@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from eulerplateau.branches.control import Direction, StepControl
-from eulerplateau.branches.film_family import equilibrium, family_near, family_of
+from eulerplateau.branches.film_family import family_near, family_of
 from eulerplateau.branches.locus import follow_locus, locus_start, special_at
 from eulerplateau.branches.locus_point import LocusPoint
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LEAST
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers import Equilibrium, Problem, check_values
+from eulerplateau.solvers import Problem, check_values
 from eulerplateau.threads import one_thread, stepwise
 
 Window = tuple[float, float]
@@ -62,9 +62,12 @@ def locus_of_film(
     return stepwise(lambda: follow_locus(start, _pinched))
 
 
-def film_at(point: LocusPoint) -> Equilibrium:
-    """Return the film at a point of a curve, with all its numbers."""
-    return equilibrium(_on_branch(point))
+def energy_at(point: LocusPoint) -> float:
+    """Return the energy of the film at a point of a curve."""
+    on_branch = _on_branch(point)
+    family = family_of(on_branch)
+    problem, load = family.at(on_branch.value)
+    return problem.energy(family.film.shape(on_branch.x), load)
 
 
 def _on_branch(point: LocusPoint) -> BranchPoint:

@@ -38,7 +38,9 @@ from eulerplateau.branches.special import (
 from eulerplateau.errors import SpecError
 from eulerplateau.solvers import RESIDUAL_TOLERANCE, tangent_model
 
-_EASY = 5  # corrections up to which the step may grow
+# Corrections up to which the step may grow, and beyond which it is too long: one that ends
+# next to a singular point is not taken, a shorter one passes that.
+_EASY, _HARD = 5, 10
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
 _AS_IT_IS = Resolution()
 _FIRST_LEAST = 4  # points before which a curve does not come back to its start
@@ -188,7 +190,7 @@ def _arm(
             return
         if after.corrections <= _EASY:
             step = min(1.5 * step, control.largest_step)
-        ahead, before = Ahead.after(before, after), resolution.resolved(after)
+        ahead, before = ahead.then(after), resolution.resolved(after)
         if before is not after:
             ahead = Ahead.straight(before)
             home = tuple(resolution.carried(motion, after, before) for motion in home)
@@ -197,7 +199,9 @@ def _arm(
 def _advance(ahead: Ahead, step: float) -> LocusPoint | None:
     """Return the point at arclength `step` from another; None if not corrected."""
     before, after = ahead.point, ahead.reached(step)
-    if after is None or not before.energy.reaches(before.model.x, after.model.x):
+    if after is None or after.corrections > _HARD:
+        return None
+    if not before.energy.reaches(before.model.x, after.model.x):
         return None
     if after.dot(before.direction, after.direction) < _STRAIGHT:
         return None

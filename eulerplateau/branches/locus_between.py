@@ -46,41 +46,53 @@ class Resolution:
 
 @dataclass(frozen=True)
 class Ahead:
-    """Where a curve goes on from a point, as far as it turned from the one before.
+    """Where a curve goes on from a point, as far as it turned between the ones before.
 
-    By the directions of both (Adams and Bashforth 1883): what neither has in it, as rigid
-    motions, no step adds.
+    By the directions of up to three (Adams and Bashforth 1883): what none of them has in
+    it, as rigid motions, no step adds.
 
     Attributes
     ----------
-    turned, steeper : how direction and steepness change, by arclength
+    reach : float, the way to the point from the one before, or 0
+    turned, steeper : how direction and steepness change, by arclength, on that way
+    bent, bowed : how these do, from the way before
     """
 
     point: LocusPoint
+    reach: float
     turned: Motion
     steeper: Motion
+    bent: Motion
+    bowed: Motion
 
     @classmethod
     def straight(cls, point: LocusPoint) -> Ahead:
         """Return what is known of a first point alone."""
         still = point.direction * 0.0
-        return cls(point, still, still)
+        return cls(point, 0.0, still, still, still, still)
 
-    @classmethod
-    def after(cls, before: LocusPoint, point: LocusPoint) -> Ahead:
-        """Return what is known of a point that has one before it."""
-        way, steep = point.direction, point.steepness
+    def then(self, point: LocusPoint) -> Ahead:
+        """Return what is known of the next point."""
+        before, way = self.point, point.direction
         reach = point.dot(way, point.place - before.place)
         turned = way - before.direction * (1 / point.dot(way, before.direction))
-        steeper = steep - before.steepness
-        return cls(point, turned * (1 / reach), steeper * (1 / reach))
+        turned, steeper = (
+            change * (1 / reach) for change in (turned, point.steepness - before.steepness)
+        )
+        if self.reach == 0:
+            return Ahead(point, reach, turned, steeper, way * 0.0, way * 0.0)
+        both = 1 / (reach + self.reach)
+        bent, bowed = (turned - self.turned) * both, (steeper - self.steeper) * both
+        return Ahead(point, reach, turned, steeper, bent, bowed)
 
     def reached(self, step: float) -> LocusPoint | None:
         """Return the point at arclength `step` from there; None if it is not corrected."""
-        point = self.point
+        point, beyond = self.point, step + self.reach
+        bend = step**2 * (step / 3 + self.reach / 2)
         guess = point.place + point.direction * step + self.turned * (0.5 * step**2)
-        near = replace(point, steepness=point.steepness + self.steeper * step)
-        found = corrected(near, guess, point)
+        steepness = point.steepness + self.steeper * step + self.bowed * (step * beyond)
+        near = replace(point, steepness=steepness)
+        found = corrected(near, guess + self.bent * bend, point)
         with suppress(LinAlgError):
             return found if found is None or np.isfinite(found.coefficient) else None
         return None

@@ -20,6 +20,9 @@ from numba import njit
 
 from eulerplateau.arrays import FloatArray
 
+# Tangent of an angle that is small, and how many of them are less than pi.
+_SMALL, _FEW = 0.1, 24
+
 
 @njit(cache=True, inline="always")
 def _solid_angle(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
@@ -43,6 +46,8 @@ def writhe(x: FloatArray) -> float:
     """Return the writhe of the closed polygon x (n, 3), right-handed crossings positive."""
     n = x.shape[0]
     total = 0.0
+    # Small angles are summed as a product of 1 + i tan(angle), a few at a time.
+    real, imaginary, few = 1.0, 0.0, 0
     for i in range(n - 2):
         j = i + 2
         # What is seen from both ends of edge i: directions to the ends of one edge more.
@@ -67,9 +72,18 @@ def writhe(x: FloatArray) -> float:
             volume += az * (bx * cy - by * cx)
             first = a * b * c + ab * c + bc * a + ca * b
             second = a * c * d + ca * d + cd * a + ad * c
-            total += math.atan2(volume * (first + second), first * second - volume * volume)
+            rise, run = volume * (first + second), first * second - volume * volume
+            if abs(rise) < _SMALL * run:
+                slope = rise / run
+                real, imaginary = real - imaginary * slope, imaginary + real * slope
+                few += 1
+                if few == _FEW:
+                    total += math.atan2(imaginary, real)
+                    real, imaginary, few = 1.0, 0.0, 0
+            else:
+                total += math.atan2(rise, run)
             ax, ay, az, dx, dy, dz, a, d, ad = bx, by, bz, cx, cy, cz, b, c, bc
-    return -total / math.pi
+    return -(total + math.atan2(imaginary, real)) / math.pi
 
 
 @njit(cache=True)

@@ -13,7 +13,7 @@ from eulerplateau.branches import (
     FOLD,
     Known,
     LocusPoint,
-    film_at,
+    energy_at,
     locus_of_film,
 )
 from eulerplateau.errors import ConflictError, OutputError, SpecError
@@ -119,7 +119,7 @@ def _row(point: LocusPoint, columns: tuple[str, ...]) -> dict[str, Any]:
     values = (
         *(float(value) for value in point.values),
         point.arclength,
-        film_at(point).energy,
+        energy_at(point),
         point.n_unstable,
         point.coefficient,
         BIFURCATION if point.course.symmetric else FOLD,

@@ -133,6 +133,12 @@ class Problem:
         )
         return energy, gradient
 
+    def energy(self, shape: Shape, load: float) -> float:
+        """Return the energy of film and loop together."""
+        film, bending = self.film.energy_gradient(shape, load), self.bending_energy(shape)
+        terms = self.loop.terms.values()
+        return film[0] + bending[0] + sum(term.energy(shape.x_loop) for term in terms)
+
     def loop_forces(self, shape: Shape) -> list[FloatArray]:
         """Return the gradient (n_v, 3) of what the loop's energy has beside its bending."""
         terms = self.loop.terms.values()

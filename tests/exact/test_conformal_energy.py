@@ -9,15 +9,17 @@ import pytest
 from scipy.special import ellipj
 
 from eulerplateau.errors import SpecError
-from eulerplateau.exact.conformal.basis import (
-    GENERAL,
-    HALF_TURNS,
-    TWISTED,
-    Basis,
-    Family,
-    make_basis,
+from eulerplateau.exact.conformal.basis import Basis, make_basis
+from eulerplateau.exact.conformal.energy import (
+    bending_blocks,
+    bending_gradient,
+    bending_hessian,
+    length_blocks,
+    length_gradient,
+    length_hessian,
+    terms,
 )
-from eulerplateau.exact.conformal.energy import bending_hessian, length_hessian, terms
+from eulerplateau.exact.conformal.families import GENERAL, HALF_TURNS, TWISTED, Family
 from eulerplateau.exact.conformal.grading import Grading, dirichlet_form
 
 CROWDINGS = (1.0, 0.3, 1e-2, 1e-4, 1e-8)
@@ -138,6 +140,31 @@ def test_a_symmetric_loops_hessian_falls_into_the_blocks_of_the_half_turns() -> 
         np.testing.assert_allclose(into @ hessian @ into.T, block, atol=1e-12 * scale)
         rest -= into.T @ block @ into
     assert np.abs(rest).max() < 1e-12 * np.abs(hessian).max()
+
+
+@pytest.mark.parametrize("family", HALF_TURNS, ids=lambda family: family.name)
+def test_a_quarter_of_a_symmetric_loop_stands_for_all_of_it(family: Family) -> None:
+    """Loops, gradients, and products with displacements that keep some half-turn."""
+    whole, symmetric = make_basis(8, GENERAL, 0.4), make_basis(8, TWISTED, 0.4)
+    part, c = make_basis(8, family, 0.4), loop(symmetric)
+    curve, there = symmetric.curve(c), whole.curve(whole.embed(symmetric, c))
+    for mine, theirs in zip(curve, there, strict=True):
+        np.testing.assert_allclose(mine, theirs, atol=1e-12 * np.abs(theirs).max())
+    way = loop(part, 5)
+    inside = whole.embed(part, way)
+    for slope in (bending_gradient, length_gradient):
+        full = slope(whole, there)
+        assert slope(part, curve) @ way == pytest.approx(
+            full @ inside, abs=1e-11 * np.linalg.norm(full)
+        )
+    for blocks in (bending_blocks, length_blocks):
+        full = blocks(whole, there).product(whole, inside)
+        mine = whole.embed(part, blocks(part, curve).product(part, way))
+        np.testing.assert_allclose(mine, full, atol=1e-11 * np.abs(full).max())
+        matrix = blocks(part, curve).matrix(part)
+        np.testing.assert_allclose(
+            whole.embed(part, matrix @ way), full, atol=1e-11 * np.abs(full).max()
+        )
 
 
 def test_another_grading_keeps_the_loop_and_its_energies() -> None:

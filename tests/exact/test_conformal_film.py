@@ -8,14 +8,7 @@ from math import copysign, pi
 import numpy as np
 import pytest
 
-from eulerplateau.exact.conformal.basis import (
-    ABOUT_X,
-    ABOUT_Z,
-    PLANAR,
-    TWISTED,
-    Family,
-    make_basis,
-)
+from eulerplateau.exact.conformal.basis import make_basis
 from eulerplateau.exact.conformal.branch import (
     BranchError,
     BranchPoint,
@@ -24,6 +17,7 @@ from eulerplateau.exact.conformal.branch import (
     switch,
 )
 from eulerplateau.exact.conformal.equilibrium import correct, disk
+from eulerplateau.exact.conformal.families import ABOUT_X, ABOUT_Z, PLANAR, TWISTED, Family
 from eulerplateau.exact.conformal.geometry import edge, surface, waist
 from eulerplateau.exact.conformal.second_variation import modes, morse_index
 from eulerplateau.exact.planar import planar_film, thresholds

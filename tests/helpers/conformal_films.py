@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from math import pi
 
-from eulerplateau.exact.conformal.basis import PLANAR, TWISTED, make_basis
+from eulerplateau.exact.conformal.basis import make_basis
 from eulerplateau.exact.conformal.branch import (
     BranchPoint,
     change_basis,
@@ -15,6 +15,7 @@ from eulerplateau.exact.conformal.branch import (
     switch,
 )
 from eulerplateau.exact.conformal.equilibrium import ConformalFilm, disk
+from eulerplateau.exact.conformal.families import PLANAR, TWISTED
 from eulerplateau.exact.conformal.lobes import first_lobes
 from eulerplateau.exact.conformal.second_variation import Mode, modes
 

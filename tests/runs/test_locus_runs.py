@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 
 from eulerplateau import interruption
-from eulerplateau.branches import LocusPoint, film_at
+from eulerplateau.branches import LocusPoint, energy_at
 from eulerplateau.errors import ConflictError
 from eulerplateau.mesh import write_mesh
 from eulerplateau.runs import locus as locus_runs
-from eulerplateau.solvers import Equilibrium
 from tests.helpers.command import run_here
 from tests.solvers.test_curved_rod import softening
 from tests.solvers.test_twist import critical_link, disk
@@ -106,15 +105,15 @@ def test_ctrl_c_leaves_the_points_so_far(
 ) -> None:
     out, seen = explored / "broken-off", []
 
-    def interrupted(point: LocusPoint) -> Equilibrium:
+    def interrupted(point: LocusPoint) -> float:
         seen.append(point)
         if len(seen) == 4:
             patched.setattr(interruption._noted, "number", signal.SIGINT)
-        return film_at(point)
+        return energy_at(point)
 
     words = "locus", explored / "ring.toml", "--point", 0, "--with", "load", "-o", out
     with monkeypatch.context() as patched:
-        patched.setattr(locus_runs, "film_at", interrupted)
+        patched.setattr(locus_runs, "energy_at", interrupted)
         done = run_here(*words)
     assert done.returncode == 130
     assert f"interrupted: {out}: 4 points" in done.stderr

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from itertools import chain, pairwise
+from itertools import chain, islice, pairwise
 
 from scipy.optimize import brentq
 
@@ -198,7 +198,8 @@ def _between(points: Iterable[BranchPoint], held: _Held) -> Neighbours:
 def _twisted_between(path: Iterable[BranchPoint], held: _Held) -> Neighbours:
     """Return the same on the branch of the least twisted film of no link."""
     points = iter(path)
-    seen, unheld = [next(points)], 0.0
+    # Flat lobes come first, which rounding alone holds.
+    seen, unheld = list(islice(points, 2)), 0.0
     for point in points:
         unheld = held(seen[-1])
         if unheld * held(point) < 0:

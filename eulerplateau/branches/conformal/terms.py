@@ -28,12 +28,12 @@ from eulerplateau.exact.conformal import (
     length_hessian,
     loop_length,
     precondition,
+    smooth_writhe,
     writhe_blocks,
     writhe_gradient,
     writhe_hessian,
-    writhe_modulo_two,
 )
-from eulerplateau.loop import EdgeTurns, EvenTwist, Term, polygon_writhe
+from eulerplateau.loop import EdgeTurns, EvenTwist, Term
 
 # Loops that are kept: where a step begins, and where it may end.
 _KEPT = 4
@@ -53,9 +53,8 @@ class SmoothLoop:
 
     @cached_property
     def writhe(self) -> float:
-        """Wr: its even part by all pairs of edges of a polygon on the loop."""
-        found = writhe_modulo_two(self.curve)
-        return found + 2 * round((polygon_writhe(self.curve.x) - found) / 2)
+        """Wr."""
+        return smooth_writhe(self.curve)
 
     @cached_property
     def crossing(self) -> Crossing:
@@ -101,7 +100,7 @@ class Unknowns:
     basis: Basis
     scale: FloatArray
     frame_scale: FloatArray
-    _known: list[tuple[FloatArray, SmoothLoop]] = field(default_factory=list, repr=False)
+    _known: dict[bytes, SmoothLoop] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, basis: Basis, frame_waves: FloatArray) -> Unknowns:
@@ -115,7 +114,7 @@ class Unknowns:
     def beside(cls, basis: Basis, loop: SmoothLoop) -> Unknowns:
         """Return those of displacements of another symmetry from a loop: it is at x = 0."""
         found, still = cls.of(basis, np.zeros(0)), np.zeros((basis.size, 1))
-        found._known.append((still, LoopBeside(basis, still[:, 0], loop)))
+        found._known[still.tobytes()] = LoopBeside(basis, still[:, 0], loop)
         return found
 
     @property
@@ -131,11 +130,13 @@ class Unknowns:
 
     def loop(self, x: FloatArray) -> SmoothLoop:
         """Return the loop of x (size + m, 1)."""
-        for place, known in self._known:
-            if np.array_equal(place, x):
-                return known
-        found = SmoothLoop(self.basis, self.scale * x[: self.basis.size, 0])
-        self._known[:] = [(x.copy(), found), *self._known[: _KEPT - 1]]
+        place = x.tobytes()
+        found = self._known.get(place)
+        if found is None:
+            while len(self._known) >= _KEPT:
+                del self._known[next(iter(self._known))]
+            found = SmoothLoop(self.basis, self.scale * x[: self.basis.size, 0])
+            self._known[place] = found
         return found
 
     def others(self, x: FloatArray) -> FloatArray:
@@ -184,7 +185,7 @@ class SmoothBending(Term):
     def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
         """Return the second derivative times a step (size, 1)."""
         u = self.unknowns
-        return u.product(bending_blocks(u.loop(x).curve), step)
+        return u.product(bending_blocks(u.basis, u.loop(x).curve), step)
 
 
 @dataclass(frozen=True)
@@ -243,7 +244,7 @@ class SmoothTwist(EvenTwist):
     def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
         """Return the second derivative times a step (size, 1)."""
         u, slope = self.unknowns, self.slope(x)
-        bent = u.product(writhe_blocks(u.loop(x).curve), step)
+        bent = u.product(writhe_blocks(u.basis, u.loop(x).curve), step)
         stiff = 4 * math.pi**2 * self.gamma * float(np.vdot(slope, step)) * slope
         return stiff - 2 * math.pi * self.moment(x) * bent
 

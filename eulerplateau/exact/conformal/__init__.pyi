@@ -1,11 +1,6 @@
 from .basis import (
-    GENERAL as GENERAL,
-    HALF_TURNS as HALF_TURNS,
-    PLANAR as PLANAR,
-    TWISTED as TWISTED,
     Basis as Basis,
     Curve as Curve,
-    Family as Family,
     finer_bases as finer_bases,
     make_basis as make_basis,
     waves as waves,
@@ -39,6 +34,13 @@ from .equilibrium import (
     correct as correct,
     disk as disk,
     precondition as precondition,
+)
+from .families import (
+    GENERAL as GENERAL,
+    HALF_TURNS as HALF_TURNS,
+    PLANAR as PLANAR,
+    TWISTED as TWISTED,
+    Family as Family,
 )
 from .gauge import (
     gauge_fields as gauge_fields,
@@ -78,8 +80,8 @@ from .strands import (
     nearest_strands as nearest_strands,
 )
 from .writhe import (
+    smooth_writhe as smooth_writhe,
     writhe_blocks as writhe_blocks,
     writhe_gradient as writhe_gradient,
     writhe_hessian as writhe_hessian,
-    writhe_modulo_two as writhe_modulo_two,
 )

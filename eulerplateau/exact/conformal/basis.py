@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
+from eulerplateau.exact.conformal.families import HALF_TURNS, TWISTED, Family
 from eulerplateau.exact.conformal.grading import Grading
 
 # The bending's integrand is no trigonometric polynomial: points per harmonic.
@@ -22,36 +23,6 @@ _TAIL = 0.1
 MOST_HARMONICS = 288
 _MOST_CROWDED = 1e-12
 
-Harmonics = tuple[tuple[str, int], ...]  # ("cos" or "sin", parity of k)
-_BOTH: Harmonics = (("cos", 0), ("cos", 1), ("sin", 0), ("sin", 1))
-
-
-@dataclass(frozen=True)
-class Family:
-    """A symmetry of loops: the harmonics in each of the coordinates x, y and z."""
-
-    name: str
-    harmonics: tuple[Harmonics, Harmonics, Harmonics]
-
-
-def _family(name: str, x: str, y: str, z: str) -> Family:
-    parts = tuple(((c.split()[0], int(c.split()[1])),) if c else () for c in (x, y, z))
-    return Family(name, (parts[0], parts[1], parts[2]))
-
-
-# Two mirror lines in the plane z = 0 (D2h), and the three half-turns about the axes (D2):
-# about x, phi -> -phi; about z, phi -> phi + pi; about y, phi -> pi - phi.
-PLANAR = _family("planar", "cos 1", "sin 1", "")
-TWISTED = _family("all half-turns", "cos 1", "sin 1", "sin 0")
-# Displacements that keep one of the half-turns and break the others.
-ABOUT_X = _family("half-turn about x", "cos 0", "sin 0", "sin 1")
-ABOUT_Y = _family("half-turn about y", "sin 0", "cos 0", "cos 1")
-ABOUT_Z = _family("half-turn about z", "sin 1", "cos 1", "cos 0")
-GENERAL = Family("no symmetry", (_BOTH, _BOTH, _BOTH))
-# Every displacement of a film of TWISTED or PLANAR is a sum of these, and its second
-# variation mixes none of them.
-HALF_TURNS = (TWISTED, ABOUT_X, ABOUT_Y, ABOUT_Z)
-
 
 class Curve(NamedTuple):
     """The loop at the grid's points: positions and derivatives by phi, each (n, 3)."""
@@ -59,6 +30,10 @@ class Curve(NamedTuple):
     x: FloatArray
     x1: FloatArray
     x2: FloatArray
+
+    def first(self, points: int) -> Curve:
+        """Return the loop at the first points alone."""
+        return Curve(self.x[:points], self.x1[:points], self.x2[:points])
 
 
 @dataclass(frozen=True)
@@ -68,6 +43,10 @@ class Basis:
     x_a(phi) = sum over the coordinate's columns of c_j cos(k_j phi) or c_j sin(k_j phi),
     k >= 1: the centre of the loop is at the origin. A loop is the vector (size,) of all
     c, of x, then y, then z. The grid has 4 points for each harmonic.
+
+    What is integrated along a loop with all half-turns is the same in each quarter of it,
+    and so are products of two displacements that keep the same half-turn: then the first
+    quarter stands for all of the grid.
     """
 
     harmonics: int
@@ -101,6 +80,31 @@ class Basis:
         return 2 * pi / len(self.phi)
 
     @cached_property
+    def is_quartered(self) -> bool:
+        """Whether a quarter stands for all: displacements all keep the same half-turn."""
+        return any(self.family.within(whole) for whole in HALF_TURNS)
+
+    @cached_property
+    def keeps_half_turns(self) -> bool:
+        """Whether all its displacements keep all half-turns."""
+        return self.family.within(TWISTED)
+
+    @cached_property
+    def points(self) -> int:
+        """How many points of the grid, the first ones, stand for all of it."""
+        n = len(self.phi)
+        return n // 4 + 1 if self.is_quartered else n
+
+    @cached_property
+    def weights(self) -> FloatArray:
+        """Their integral weights (points,), which count those they stand for."""
+        if not self.is_quartered:
+            return np.full(self.points, self.weight)
+        weights = np.full(self.points, 4 * self.weight)
+        weights[[0, -1]] /= 2  # ends of two quarters
+        return weights
+
+    @cached_property
     def columns(self) -> tuple[tuple[tuple[str, int], ...], ...]:
         """For each coordinate its ("cos" or "sin", k)."""
         return tuple(
@@ -116,7 +120,7 @@ class Basis:
     @cached_property
     def slices(self) -> tuple[slice, slice, slice]:
         """Where the coefficients of x, y and z are."""
-        ends = np.cumsum([0, *map(len, self.columns)]).tolist()
+        ends = self.starts.tolist()
         return slice(*ends[:2]), slice(*ends[1:3]), slice(*ends[2:])
 
     @property
@@ -135,6 +139,27 @@ class Basis:
         return tuple(waves(part, self.phi) for part in self.columns)
 
     @cached_property
+    def stacked(self) -> FloatArray:
+        """Columns and their two derivatives at the first `points`: (3, points, size)."""
+        n, parts = self.points, self.matrices
+        orders = (np.hstack([part[order][:n] for part in parts]) for order in range(3))
+        return np.stack(tuple(orders))
+
+    @cached_property
+    def starts(self) -> IntArray:
+        """Where the coefficients of x, y and z begin, and their end (4,)."""
+        return np.cumsum([0, *map(len, self.columns)])
+
+    @cached_property
+    def _signs(self) -> tuple[FloatArray, FloatArray]:
+        """By what a loop is multiplied, (3, 1, 3), for phi -> pi - phi, and phi + pi."""
+        kinds = [part[0] if part else ("cos", 0) for part in self.family.harmonics]
+        turned = np.array([1 - 2 * parity for _, parity in kinds])
+        even = np.array([1 if kind == "cos" else -1 for kind, _ in kinds])
+        mirrored = np.array([1, -1, 1])[:, None, None] * (turned * even)
+        return mirrored, np.broadcast_to(turned, (3, 1, 3))
+
+    @cached_property
     def dirichlet(self) -> FloatArray:
         """Q (size, size), c^T Q c / 2 being the Dirichlet energy of the extension.
 
@@ -147,18 +172,19 @@ class Basis:
 
     def curve(self, coefficients: FloatArray) -> Curve:
         """Return the loop at the points of the grid."""
-        return Curve(
-            *(
-                np.stack(
-                    [
-                        m[order] @ coefficients[part]
-                        for m, part in zip(self.matrices, self.slices, strict=True)
-                    ],
-                    axis=-1,
-                )
-                for order in range(3)
-            )
-        )
+        quarter = np.stack(self.part(coefficients))
+        if not self.is_quartered:
+            return Curve(*quarter)
+        mirrored, turned = self._signs
+        half = np.concatenate([quarter, mirrored * quarter[:, -2:0:-1]], axis=1)
+        return Curve(*np.concatenate([half, turned * half], axis=1))
+
+    def part(self, coefficients: FloatArray) -> Curve:
+        """Return the loop at the first `points` of the grid."""
+        found = np.empty((3, self.points, 3))
+        for axis, part in enumerate(self.slices):
+            found[:, :, axis] = self.stacked[:, :, part] @ coefficients[part]
+        return Curve(*found)
 
     def at(self, coefficients: FloatArray, phi: FloatArray) -> Curve:
         """Return the loop at any phi (n,)."""

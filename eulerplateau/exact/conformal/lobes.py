@@ -9,7 +9,7 @@ import numpy as np
 
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.checks import finite
-from eulerplateau.exact.conformal.basis import PLANAR, TWISTED, Basis, make_basis
+from eulerplateau.exact.conformal.basis import Basis, make_basis
 from eulerplateau.exact.conformal.branch import (
     BranchError,
     BranchPoint,
@@ -19,6 +19,7 @@ from eulerplateau.exact.conformal.branch import (
     switch,
 )
 from eulerplateau.exact.conformal.equilibrium import ConformalFilm, disk
+from eulerplateau.exact.conformal.families import PLANAR, TWISTED
 from eulerplateau.exact.conformal.second_variation import modes
 from eulerplateau.exact.planar import thresholds
 

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.checks import checked_diameter
-from eulerplateau.exact.conformal.basis import TWISTED, Basis, make_basis
+from eulerplateau.exact.conformal.basis import Basis, make_basis
 from eulerplateau.exact.conformal.branch import BranchError
 from eulerplateau.exact.conformal.equilibrium import (
     ConformalFilm,
@@ -28,6 +28,7 @@ from eulerplateau.exact.conformal.equilibrium import (
     correct,
     precondition,
 )
+from eulerplateau.exact.conformal.families import TWISTED
 from eulerplateau.exact.conformal.geometry import waist
 from eulerplateau.exact.conformal.held_waist import width_gradient
 

@@ -14,20 +14,19 @@ import numpy as np
 from scipy.linalg import LinAlgError, cholesky, eigh
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.conformal.basis import (
-    GENERAL,
-    HALF_TURNS,
-    PLANAR,
-    TWISTED,
-    Basis,
-    Family,
-    make_basis,
-)
+from eulerplateau.exact.conformal.basis import Basis, make_basis
 from eulerplateau.exact.conformal.energy import length_gradient
 from eulerplateau.exact.conformal.equilibrium import (
     ConformalFilm,
     lagrangian_hessian,
     precondition,
+)
+from eulerplateau.exact.conformal.families import (
+    GENERAL,
+    HALF_TURNS,
+    PLANAR,
+    TWISTED,
+    Family,
 )
 from eulerplateau.exact.conformal.gauge import gauge_modes
 

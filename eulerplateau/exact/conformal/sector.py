@@ -25,7 +25,8 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
-from eulerplateau.exact.conformal.basis import TWISTED, Basis, Family
+from eulerplateau.exact.conformal.basis import Basis
+from eulerplateau.exact.conformal.families import TWISTED, Family
 
 # Points per harmonic on the whole loop, and the fewest on half a lobe.
 _POINTS, _FEWEST_POINTS = 6, 24

@@ -28,8 +28,8 @@ from eulerplateau.exact.conformal import (
     switch,
     waist,
 )
-from eulerplateau.exact.conformal.basis import ABOUT_X
 from eulerplateau.exact.conformal.eight_modes import planar_modes, transverse_modes
+from eulerplateau.exact.conformal.families import ABOUT_X
 from eulerplateau.exact.planar import planar_film, thresholds
 from scripts.studies.common import ROOT
 from scripts.studies.true_film.branches import (

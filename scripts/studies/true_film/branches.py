@@ -26,7 +26,7 @@ from eulerplateau.exact.conformal import (
     switch,
     waist,
 )
-from eulerplateau.exact.conformal.basis import ABOUT_Z
+from eulerplateau.exact.conformal.families import ABOUT_Z
 
 # Films are refined until the last tenth of their harmonics is this small.
 TAIL = 1e-10

@@ -85,6 +85,7 @@ def eight_on(mesh: Disk, exact: ThickEight, shift: float = 0.0) -> Equilibrium:
         twist_ratio=exact.twist_ratio or None,
         link=exact.link,
         diameter=exact.diameter,
+        refine=False,
     )
     return solve(problem, exact.film.load, start)
 

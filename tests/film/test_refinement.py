@@ -1,4 +1,4 @@
-"""Finer triangles near places of a film: which edges, and that it stays the same surface."""
+"""Finer triangles near places of a film: which edges, and that it stays the same."""
 
 from __future__ import annotations
 

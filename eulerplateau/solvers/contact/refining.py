@@ -11,8 +11,8 @@ from eulerplateau.solvers.equilibrium import Equilibrium
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.start import coarse
 
-# How long edges of the film may be where strands cross: over the diameter, or if that is
-# more over the edges of the loop, as triangles that join it are no finer without being thin.
+# How long edges of the film may be where strands cross: in diameters; or in edges of the
+# loop if that is more, since triangles that join these are thin if they are finer.
 _OF_DIAMETER = 1 / 2
 _OF_LOOP = 1 / 3
 # A film is refined once in one solve, and laid on its mesh again where its strands part.

@@ -113,7 +113,7 @@ def test_a_finer_film_halves_the_error_of_the_force_of_a_thin_line(vertices: int
 
     The loop's edges are four to six times as long as the line is thick, as they were.
     """
-    loads, thick = (1000.0, 800.0, 600.0), 0.001
+    loads, thick = (1900.0, 1400.0, 1000.0, 800.0, 600.0), 0.001
     values = {"load": loads[-1], "diameter": thick, "twist_ratio": 0.0, "link": 0.0}
     exact = refined(touching(values))[1].force
     mesh = mesh_polygon("ellipse", aspect=2.0, vertices=vertices, grading=5.0)

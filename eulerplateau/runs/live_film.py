@@ -56,9 +56,6 @@ class LiveFilm:
 
     def __init__(self, spec: RunSpec) -> None:
         """Find the film at the first value of the run; raises SpecError, MeshError."""
-        # Pages draw one set of vertices.
-        plain = spec.film.model_copy(update={"refine": False})
-        spec = spec.model_copy(update={"film": plain})
         self._spec, self._disk = spec, make_mesh(spec)
         self._rest = make_problem(spec, self._disk)
         self._measurer = Measurer(self._disk)

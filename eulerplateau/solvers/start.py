@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
@@ -36,6 +38,13 @@ def displaced(mesh: Disk, displacement: float, seed: int) -> FloatArray:
     across = np.linalg.svd(centred)[2][2]
     noise = np.random.default_rng(seed).standard_normal(mesh.n_v)
     return mesh.x + np.outer(displacement * noise, across)
+
+
+def on_its_mesh(problem: Problem) -> Problem:
+    """Return a problem whose films are not refined."""
+    made = copy(problem)
+    object.__setattr__(made, "refines", False)
+    return made
 
 
 def coarse(problem: Problem, shape: Shape) -> Shape:

@@ -11,7 +11,7 @@ import pytest
 from eulerplateau.mesh import read_disk, write_mesh
 from eulerplateau.pictures.gallery.collection import collect
 from eulerplateau.pictures.gallery.document import page
-from eulerplateau.runs import read_run, read_shape, run_sweep
+from eulerplateau.runs import read_run, read_shape, run_branches, run_sweep
 from eulerplateau.runs.spec import RunSpec
 from eulerplateau.settings import validate
 from tests.helpers import shapes
@@ -101,3 +101,18 @@ def test_a_run_goes_on_from_a_refined_shape(
     whole, parts = read_run(swept).rows[-1], read_run(tmp_path / "run").rows[-1]
     assert parts.film_vertices == whole.film_vertices
     assert parts.energy == pytest.approx(whole.energy, rel=1e-10)
+
+
+def test_branches_start_from_a_refined_shape(
+    mesh: Path, swept: Path, tmp_path: Path
+) -> None:
+    run = read_run(swept)
+    row, start = (
+        run.rows[1],
+        {"file": str(run.shape_path(run.rows[1])), "displacement": 0.0},
+    )
+    ends = {"load_min": row.sigma_hat - 1.0, "load_max": row.sigma_hat + 1.0}
+    run_branches(spec(mesh, LOADS, start=start, branches=ends), tmp_path / "branches")
+    found = read_run(tmp_path / "branches").rows
+    assert found[0].contacts == 1
+    assert found[0].energy == pytest.approx(row.energy, rel=1e-4)

@@ -32,6 +32,7 @@ from eulerplateau.solvers import (
     Problem,
     Status,
     check_values,
+    on_its_mesh,
     solve,
 )
 from eulerplateau.threads import one_thread, stepwise
@@ -135,7 +136,7 @@ def first_equilibrium(
     It lies on the disk's own triangles: what the way there has made of them is no part of
     its state. Raises SpecError where there is none.
     """
-    found = solve(problem, load, start)
+    found = solve(on_its_mesh(problem), load, start)
     if found.status not in _EQUILIBRIA:
         value, lost = problem.value(parameter, load), found.status.value
         raise SpecError(

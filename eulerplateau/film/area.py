@@ -39,6 +39,9 @@ _KEPT = 4
 _NEAR = 1e-3
 _REWEIGHTINGS = 6
 
+# How many vertices a film may come to where it is refined, over those of its mesh.
+_MOST = 2
+
 
 @dataclass(frozen=True, repr=False)
 class AreaFilm:
@@ -57,15 +60,21 @@ class AreaFilm:
 
     def __repr__(self) -> str:
         """Return one line: how many vertices, and the load's name."""
-        n_v = len(self.loop) + len(self.interior)
-        return f"<AreaFilm: {n_v} vertices, load {self.load.text}>"
+        return f"<AreaFilm: {self.n_v} vertices, load {self.load.text}>"
+
+    @property
+    def n_v(self) -> int:
+        """Number of vertices of its mesh; shapes have as many, or more where refined."""
+        return len(self.loop) + len(self.interior)
 
     def tiling(self, triangles: IntArray) -> Tiling:
         """Return the tiling by these triangles (n_t, 3), its pattern kept for later."""
         for known in self._tilings:
             if known.triangles is triangles or np.array_equal(known.triangles, triangles):
                 return known
-        return self._keep(Tiling(triangles, self.loop, self.interior))
+        more = np.arange(self.n_v, int(triangles.max()) + 1)
+        inside = np.concatenate([self.interior, more]) if len(more) else self.interior
+        return self._keep(Tiling(triangles, self.loop, inside))
 
     def _keep(self, tiling: Tiling) -> Tiling:
         if all(known is not tiling for known in self._tilings):
@@ -104,6 +113,14 @@ class AreaFilm:
         """Return the shape after its loop has moved, repaired where triangles got thin."""
         tiling = self.tiling(shape.triangles)
         return self.on(*carry_along(tiling, shape.x, x_loop))
+
+    def refined(self, shape: Shape, places: FloatArray, finest: float) -> Shape:
+        """Return the shape with finer triangles near places; itself if they are fine."""
+        from eulerplateau.film.refinement import EdgeSizes, refined
+
+        tiling = self.tiling(shape.triangles)
+        finer, x = refined(tiling, shape.x, EdgeSizes(places, finest), _MOST * self.n_v)
+        return shape if finer is tiling else self.on(finer, x)
 
     def of_loop(self, near: Shape) -> AreaOfLoop:
         """Return the film as a function of its loop near a shape, on its triangles."""

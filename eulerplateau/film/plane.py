@@ -80,6 +80,10 @@ class PlaneFilm:
         """Return the shape after its loop has moved to x_loop (n_b, 3)."""
         return self.soap.carried(shape, x_loop)
 
+    def refined(self, shape: Shape, places: FloatArray, finest: float) -> Shape:
+        """Return the shape as it is: its triangles are only looked at."""
+        return shape
+
     def of_loop(self, near: Shape) -> PlaneOfLoop:
         """Return the film as a function of its polygon; its mesh follows from a shape."""
         return PlaneOfLoop(self, near)

@@ -19,7 +19,8 @@ from eulerplateau.mesh import Shape
 class Film(Protocol):
     """A film across a disk. Energies in units of alpha / L, loads the film's own.
 
-    Shapes have the vertices of the disk, and its triangles or others.
+    Shapes have the vertices of the disk, and its triangles or others; a soap film may have
+    more of them inside, behind the disk's.
     """
 
     @property
@@ -44,6 +45,13 @@ class Film(Protocol):
 
     def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
         """Return the shape after its loop has moved to x_loop (n_b, 3)."""
+
+    def refined(self, shape: Shape, places: FloatArray, finest: float) -> Shape:
+        """Return the shape with edges inside no longer than `finest` near places (k, 3).
+
+        Away from these in proportion. Itself where it is nearly as fine, and of films that
+        are tied to their mesh, or for which triangles are no matter.
+        """
 
     def of_loop(self, near: Shape) -> FilmOfLoop:
         """Return the film as a function of its loop, good near a shape."""

@@ -81,6 +81,10 @@ class QuadraticFilm:
         """Return the film at rest on a loop (n_b, 3)."""
         return self._eliminated.shape(x_loop)
 
+    def refined(self, shape: Shape, places: FloatArray, finest: float) -> Shape:
+        """Return the shape as it is: the mesh is what the film is made of."""
+        return shape
+
     def of_loop(self, near: Shape) -> QuadraticOfLoop:
         """Return the film as a function of its loop, the same near every shape."""
         return self._eliminated

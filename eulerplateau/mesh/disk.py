@@ -93,19 +93,23 @@ class Disk:
     def with_triangles(self, triangles: IntArray) -> Disk:
         """Return the mesh with other triangles (n_t, 3) on the same vertices and loop.
 
-        Inside, vertices rest where each is the mean of its neighbours (Tutte 1963), which
-        leaves no triangle turned over if the loop is convex.
+        Or with more vertices inside, behind those of the loop. Inside, vertices rest where
+        each is the mean of its neighbours (Tutte 1963), which leaves no triangle turned
+        over if the loop is convex.
         """
+        n_v = int(triangles.max()) + 1
         start, end = np.unique(directed_edges(triangles), axis=0).T
-        between = coo_array((np.ones(len(start)), (start, end)), shape=(self.n_v,) * 2)
+        between = coo_array((np.ones(len(start)), (start, end)), shape=(n_v, n_v))
         joined = (between + between.T).tocsr()
         joined.data[:] = 1.0
         degree = diags_array(joined.sum(axis=1))
-        rows = (degree - joined).tocsr()[self.interior]
-        x = self.x.copy()
-        if len(self.interior):
+        interior = np.setdiff1d(np.arange(n_v), self.loop)
+        rows = (degree - joined).tocsr()[interior]
+        x = np.zeros((n_v, 3))
+        x[self.loop] = self.x[self.loop]
+        if len(interior):
             pull = rows[:, self.loop] @ x[self.loop]
-            x[self.interior] = -splu(rows[:, self.interior].tocsc()).solve(pull)
+            x[interior] = -splu(rows[:, interior].tocsc()).solve(pull)
         return replace(self, x=x, triangles=triangles)
 
     @property

@@ -19,14 +19,14 @@ from eulerplateau.solvers import Equilibrium, Problem
 
 def contact_cells(found: Equilibrium) -> dict[str, Any]:
     """Return the cells of `OfContact` of an equilibrium."""
-    contacts = found.contacts
+    contacts, size = found.contacts, len(found.shape.x)
     if contacts is None:  # nothing was found, as where strands cannot be parted
-        return asdict(OfContact(None, None, None, None))
+        return asdict(OfContact(None, None, None, None, size))
     strongest = int(np.argmax(contacts.forces)) if len(contacts) else None
     gap = contacts.smallest_gap
     angle = None if strongest is None else float(contacts.angles[strongest])
     near = gap if isfinite(gap) else None
-    return asdict(OfContact(len(contacts), contacts.force, near, angle))
+    return asdict(OfContact(len(contacts), contacts.force, near, angle, size))
 
 
 def contact_forces(problem: Problem, found: Equilibrium) -> FloatArray:

@@ -17,6 +17,9 @@ class FilmSettings(Settings):
     ----------
     plane : bool
         Keeps a film of the true area in its plane, where its loop is all it needs.
+    refine : bool
+        Whether in sweeps a film of the true area is made finer where strands of a loop that
+        has a diameter cross.
     load : float, k L^3 / alpha of springs and sigma_hat of other films
         Where another parameter than the load is varied: that at which it is.
     surface_tension : float in N/m, or "25 mN/m"
@@ -26,5 +29,6 @@ class FilmSettings(Settings):
 
     model: Literal["springs", "dirichlet", "area"] = "springs"
     plane: bool = False
+    refine: bool = True
     load: float | None = Field(default=None, ge=0)
     surface_tension: SurfaceTension | None = None

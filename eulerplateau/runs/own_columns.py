@@ -65,12 +65,14 @@ class OfContact:
     contact_force : float, the sum of the forces with which they push, alpha / L^2
     smallest_gap : float, between strands; None beyond half the diameter
     crossing_angle : float, between the strands that push most, degrees, in [0, 90]
+    film_vertices : int, of its triangles: more than the mesh's where it was refined
     """
 
     contacts: int | None
     contact_force: float | None
     smallest_gap: float | None
     crossing_angle: float | None
+    film_vertices: int
 
 
 @cache

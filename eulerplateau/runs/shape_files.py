@@ -71,6 +71,8 @@ class ShapeSequence:
     Attributes
     ----------
     x : (n, n_v, 3) float, lengths in units of L
+        As many vertices as the largest has; those behind a smaller one's belong to none of
+        its triangles, and lie where its last one does.
     loop : (n_b,) int, cyclic
     tilings : where triangles change: the shape from which on, and (n_t, 3) int
         The first is from shape 0 on; only a soap film that was repaired has others.
@@ -215,25 +217,35 @@ def read_state(path: Path) -> tuple[Shape, Mapping[str, NDArray[Any]]]:
 def read_shapes(paths: Sequence[Path]) -> ShapeSequence:
     """Read the shapes of a run, at least one.
 
-    Raises OutputError naming the file that cannot be read, has other vertices or another
-    loop than the first, or positions that are not finite.
+    Raises OutputError naming the file that cannot be read, is of another mesh at rest than
+    the first or has another loop, or positions that are not finite.
     """
     x: list[FloatArray] = []
     tilings: list[tuple[int, IntArray]] = []
-    loop: IntArray | None = None
+    first: VtpFile | None = None
     for path in paths:
         shape = _read(path, ("step",))
-        line = shape.lines[0][:-1]
-        loop = line if loop is None else loop
-        if not np.array_equal(line, loop) or (x and len(shape.points) != len(x[0])):
+        first = shape if first is None else first
+        if not _of_one_mesh(first, shape):
             raise OutputError(path, f"has another mesh than {paths[0].name}")
         if not tilings or not np.array_equal(shape.triangles, tilings[-1][1]):
             tilings.append((len(x), shape.triangles))
         if not np.isfinite(shape.points).all():
             raise OutputError(path, "has positions that are not finite")
         x.append(shape.points)
-    assert loop is not None  # there are paths
-    return ShapeSequence(np.array(x), loop, tuple(tilings))
+    assert first is not None  # there are paths
+    most = max(len(points) for points in x)
+    full = [np.pad(points, ((0, most - len(points)), (0, 0)), "edge") for points in x]
+    return ShapeSequence(np.array(full), first.lines[0][:-1], tuple(tilings))
+
+
+def _of_one_mesh(first: VtpFile, other: VtpFile) -> bool:
+    """Return whether two shapes have one loop and, but for refinement, one mesh."""
+    if not np.array_equal(first.lines[0], other.lines[0]):
+        return False
+    one, another = (shape.field_data.get(_REST_MESH) for shape in (first, other))
+    refined = one is not None and np.array_equal(one, another)
+    return refined or len(first.points) == len(other.points)
 
 
 def _read(path: Path, of_its_row: tuple[str, ...]) -> VtpFile:

@@ -9,8 +9,11 @@ from eulerplateau.runs.spec import RunSpec
 from eulerplateau.solvers import Problem, displaced
 
 
-def make_problem(spec: RunSpec, disk: Disk) -> Problem:
-    """Return what a run minimises; raises SpecError, MeshError."""
+def make_problem(spec: RunSpec, disk: Disk, *, refine: bool = False) -> Problem:
+    """Return what a run minimises; raises SpecError, MeshError.
+
+    refine : whether soap films may be finer than their mesh at contacts, as Problem has it
+    """
     return Problem(
         disk,
         spec.film.model,
@@ -19,6 +22,7 @@ def make_problem(spec: RunSpec, disk: Disk) -> Problem:
         link=spec.loop.link or 0.0,
         rest_curvature=spec.loop.rest_curvature or 0.0,
         diameter=spec.diameter,
+        refine=refine,
     )
 
 
@@ -31,7 +35,9 @@ def start_shape(spec: RunSpec, disk: Disk) -> Shape:
     stored = stored_start(spec, disk)
     if stored is None:
         return disk.shape.moved(x)
-    return stored.moved(stored.x + (x - disk.x))
+    moved = stored.x.copy()
+    moved[: disk.n_v] += x - disk.x  # one that was refined has more vertices behind these
+    return stored.moved(moved)
 
 
 def stored_start(spec: RunSpec, disk: Disk) -> StoredShape | None:

@@ -73,7 +73,7 @@ def run_sweep(
     """
     started = time.perf_counter()
     disk = make_mesh(spec)
-    problem = make_problem(spec, disk)
+    problem = make_problem(spec, disk, refine=spec.film.refine)
     start, tensions, solver = start_shape(spec, disk), None, spec.solver
     opening = _opening(spec, overwrite, resume)
     held, varied = spec.held or 0.0, in_problem(spec.sweep.varied)

@@ -21,6 +21,7 @@ from eulerplateau.solvers import Status
 _INTEGERS = {
     "step", "n_unstable", "iterations", "self_intersections", "branch", "origin", "special",
     "number", "by_starts", "by_deflation", "first_start", "first_guess", "contacts",
+    "film_vertices",
 }  # fmt: skip
 _MAY_BE_EMPTY = {
     "n_unstable", "lowest_eigenvalue", "self_intersections", "origin", "special",

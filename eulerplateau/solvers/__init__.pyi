@@ -31,6 +31,10 @@ from .solving import (
     solve as solve,
     sweep as sweep,
 )
-from .start import displaced as displaced, smooth_kick as smooth_kick
+from .start import (
+    displaced as displaced,
+    on_its_mesh as on_its_mesh,
+    smooth_kick as smooth_kick,
+)
 from .tangent_coordinates import Columns as Columns
 from .tangent_space import Directional as Directional, directional as directional

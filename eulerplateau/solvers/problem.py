@@ -41,11 +41,13 @@ class Problem:
     ----------
     disk : the mesh at rest
     film, loop : the two energies
+    refines : whether a soap film is made finer where strands of a thick loop cross
     """
 
     disk: Disk
     film: Film
     loop: Loop
+    refines: bool
 
     def __init__(
         self,
@@ -57,13 +59,15 @@ class Problem:
         link: float = 0.0,
         rest_curvature: float = 0.0,
         diameter: float | None = None,
+        refine: bool = True,
     ) -> None:
         """Span a disk by a film: "springs", "dirichlet", "area", or a film of one's own.
 
         `in_plane` keeps a film of true area in the plane of its disk. With `twist_ratio`,
         the rigidities' C / B, the loop resists twist: it was turned `link` times and then
         welded; by nature it is `rest_curvature` times as curved as a circle of its length.
-        With a `diameter`, in units of L, its strands touch and pass through nothing.
+        With a `diameter`, in units of L, its strands touch and pass through nothing; where
+        they cross, a film of true area gets finer triangles, unless `refine` is false.
         Raises SpecError for an unknown film or a wrong number, MeshError for a disk that
         cannot carry it.
         """
@@ -75,6 +79,7 @@ class Problem:
         object.__setattr__(self, "film", made)
         rod = Rod(twist_ratio, link, rest_curvature, diameter)
         object.__setattr__(self, "loop", rod.loop(disk.rest_lengths, in_plane))
+        object.__setattr__(self, "refines", refine and diameter is not None)
 
     def __repr__(self) -> str:
         """Return one line: the film, and the size of its mesh."""
@@ -228,7 +233,8 @@ class Problem:
         terms = self.loop.terms.items()
         loop = {name: term.energy(shape.x_loop) for name, term in terms}
         pulls = np.abs(pull).max(axis=1)
-        inside, strongest = pulls[self.disk.interior].max(initial=0.0), pulls.max()
+        inside = np.delete(pulls, shape.loop).max(initial=0.0)
+        strongest = pulls.max()
         return Equilibrium(
             shape=shape,
             tensions=tensions,

@@ -15,7 +15,7 @@ from eulerplateau.loop import LEAST, MOST
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium
 from eulerplateau.solvers.problem import Problem
-from eulerplateau.solvers.start import displaced
+from eulerplateau.solvers.start import coarse, displaced
 from eulerplateau.threads import one_thread
 
 # By the names of solver.name in a run's specification; only the one asked for is loaded.
@@ -202,10 +202,14 @@ def _start(problem: Problem, start: Start | None) -> tuple[Shape, FloatArray | N
 
 
 def _fitting(problem: Problem, shape: Shape) -> Shape:
-    """Return a shape of the problem's own vertices, or raise SpecError."""
+    """Return a shape the problem can begin with, or raise SpecError."""
     if not np.array_equal(shape.loop, problem.disk.loop):
         raise SpecError("start", "has another loop than the problem's disk: is it its own?")
-    return problem.shape(shape.x) if shape.x.shape != problem.disk.x.shape else shape
+    if shape.x.shape == problem.disk.x.shape:
+        return shape
+    if len(shape.x) < problem.disk.n_v:
+        return problem.shape(shape.x)
+    return shape if problem.refines else coarse(problem, shape)
 
 
 def _tensions(problem: Problem, tensions: ArrayLike) -> FloatArray:

@@ -1,11 +1,15 @@
-"""A small push in no special direction, to see whether an equilibrium is a saddle."""
+"""Where a search begins: small pushes in no special direction, shapes of finer meshes."""
 
 from __future__ import annotations
+
+from copy import copy
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.mesh import Disk
+from eulerplateau.errors import SpecError
+from eulerplateau.mesh import Disk, Shape
+from eulerplateau.solvers.problem import Problem
 
 _SIZE = 1e-3
 
@@ -34,3 +38,22 @@ def displaced(mesh: Disk, displacement: float, seed: int) -> FloatArray:
     across = np.linalg.svd(centred)[2][2]
     noise = np.random.default_rng(seed).standard_normal(mesh.n_v)
     return mesh.x + np.outer(displacement * noise, across)
+
+
+def on_its_mesh(problem: Problem) -> Problem:
+    """Return a problem whose films are not refined."""
+    made = copy(problem)
+    object.__setattr__(made, "refines", False)
+    return made
+
+
+def coarse(problem: Problem, shape: Shape) -> Shape:
+    """Return a shape that has more vertices than its problem's disk, on those of the disk.
+
+    Across the same loop; its triangles are those of the mesh at rest. Raises SpecError
+    where these span no film.
+    """
+    tied = problem.tied_film()
+    if tied is None:
+        raise SpecError("start", "has other vertices than the mesh, which spans no film")
+    return tied.shape(shape.x_loop)

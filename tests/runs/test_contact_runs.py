@@ -34,7 +34,9 @@ from eulerplateau.solvers import Problem
 from tests.helpers import shapes
 from tests.helpers.command import run_here
 
-CONTACT = ("contacts", "contact_force", "smallest_gap", "crossing_angle")
+CONTACT = (
+    "contacts", "contact_force", "smallest_gap", "crossing_angle", "film_vertices",
+)  # fmt: skip
 THICK = 0.06
 # Two lobes without contact, and the twisted eight that they snap to, in contact.
 LOADS = [2600.0, 3600.0]

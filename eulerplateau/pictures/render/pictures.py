@@ -152,6 +152,8 @@ def _followed(run: Run, stage: Stage) -> tuple[Shape, ...]:
     """Return the shapes of a run, each turned as little as can be from the one before."""
     found = run.shapes()
     (x,) = stage.settled([(run.series, found.x / stage.size)], found.loop)
+    tilings = [found.triangles(place) for place in range(len(x))]
     return tuple(
-        Shape(own, found.triangles(place), found.loop) for place, own in enumerate(x)
+        Shape(own[: tiles.max() + 1], tiles, found.loop)
+        for own, tiles in zip(x, tilings, strict=True)
     )

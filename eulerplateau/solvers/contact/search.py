@@ -15,6 +15,7 @@ from eulerplateau.mesh import Shape
 from eulerplateau.solvers.contact.descent import ContactDescent
 from eulerplateau.solvers.contact.keeping import Touching
 from eulerplateau.solvers.contact.record import contacts_of
+from eulerplateau.solvers.contact.refining import resolved
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
 from eulerplateau.solvers.problem import Problem
@@ -48,10 +49,16 @@ def search(
         more = load, max_iterations, observe
         found = _near(problem, strands, start, lifted, x_loop, *more)
         lost = found is None or found.status is Status.STALLED
-        if not lost or problem.film.dimension == 2:
-            return found
-        other = _from_tied(problem, strands, x_loop, *more)
-        return other if found is None or (other is not None and other.converged) else found
+        if lost and problem.film.dimension != 2:
+            other = _from_tied(problem, strands, x_loop, *more)
+            if found is None or (other is not None and other.converged):
+                found = other
+
+        def again(shape: Shape, spent: int) -> Equilibrium | None:
+            x, left = film.project(shape.x_loop), max_iterations - spent
+            return _near(problem, strands, shape, film.lift(x), x, load, left, observe)
+
+        return resolved(problem, found, again)
 
 
 def _from_tied(

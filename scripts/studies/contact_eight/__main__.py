@@ -15,7 +15,8 @@ from eulerplateau.branches.conformal import (
 )
 from eulerplateau.exact.conformal import flat_eight
 from eulerplateau.threads import one_thread
-from scripts.studies.common import markdown_table
+from scripts.studies.common import machine, markdown_table
+from scripts.studies.contact_eight import refinement
 from scripts.studies.contact_eight.on_meshes import table
 
 DIAMETERS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
@@ -30,9 +31,13 @@ SPLIT = 0.02
 @click.command()
 @click.option("--no-loads", is_flag=True, help="Leave out the slow table of loads.")
 @click.option("--meshes", is_flag=True, help="Print the table of meshes only.")
-def main(no_loads: bool, meshes: bool) -> None:
+@click.option("--refined", is_flag=True, help="Print the table of refined meshes only.")
+def main(no_loads: bool, meshes: bool, refined: bool) -> None:
     """Print films at one load, the formula's error, meshes, then loads over diameters."""
     with one_thread():
+        if refined:
+            click.echo(f"{machine()}\n\n{markdown_table(refinement.table(), 0)}")
+            return
         if meshes:
             click.echo(markdown_table(table(), 0))
             return

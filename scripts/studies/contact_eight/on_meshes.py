@@ -69,10 +69,13 @@ def along(film: ConformalFilm, t: FloatArray) -> FloatArray:
     return film.basis.at(film.coefficients, at).x
 
 
-def eight_on(mesh: Disk, exact: ThickEight, shift: float = 0.0) -> Equilibrium:
+def eight_on(
+    mesh: Disk, exact: ThickEight, shift: float = 0.0, *, refine: bool = False
+) -> Equilibrium:
     """Return what a mesh's film comes to from a mesh-free one's loop, at its values.
 
-    The mesh is shifted along the loop by a part of an edge.
+    The mesh is shifted along the loop by a part of an edge, and finer at the contact if
+    `refine` is true.
     """
     t = np.cumsum(mesh.rest_lengths) + shift / mesh.n_b
     film = Problem(mesh).tied_film()
@@ -85,6 +88,7 @@ def eight_on(mesh: Disk, exact: ThickEight, shift: float = 0.0) -> Equilibrium:
         twist_ratio=exact.twist_ratio or None,
         link=exact.link,
         diameter=exact.diameter,
+        refine=refine,
     )
     return solve(problem, exact.film.load, start)
 

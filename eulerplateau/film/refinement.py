@@ -1,0 +1,122 @@
+"""Finer triangles inside a soap film near places where strands of its loop cross.
+
+There the film is a helicoid as narrow as the strands are apart, and elsewhere nearly flat.
+The loop's edges stay as they are: how far apart strands are is known of the smooth curve
+through their ends (loop/strands.py), however long they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.film.repair import mend_triangles
+from eulerplateau.film.tiling import Tiling
+
+# How long edges may be over their distance from the nearest place.
+_GROWTH = 0.35
+# By how much an edge is too long where refinement begins: what that leaves slides and
+# stretches later, and is no reason to begin again.
+_SLACK = 2.0
+# In one round no triangle is halved twice.
+_ROUNDS = 30
+
+
+@dataclass(frozen=True)
+class EdgeSizes:
+    """How long edges of a film may be, the longer the farther away from places (k, 3)."""
+
+    places: FloatArray
+    finest: float
+
+    def at(self, x: FloatArray) -> FloatArray:
+        """Return the length (n,) that edges may have whose middles are at x (n, 3)."""
+        away = np.linalg.norm(x[:, None] - self.places, axis=2).min(axis=1)
+        sizes: FloatArray = np.maximum(self.finest, _GROWTH * away)
+        return sizes
+
+
+def refined(
+    tiling: Tiling, x: FloatArray, sizes: EdgeSizes, most: int
+) -> tuple[Tiling, FloatArray]:
+    """Return a film (n_v, 3) whose edges inside are as short as they should be.
+
+    Vertices are added behind those there are, up to `most` in all; the loop is untouched.
+    The film as it was if no edge is longer by a factor of two.
+    """
+    edges = _Edges.of(tiling, x)
+    if not (edges.inside & (edges.lengths > _SLACK * sizes.at(edges.middles))).any():
+        return tiling, x
+    for _ in range(_ROUNDS):
+        halved = _halved(tiling, x, sizes)
+        if halved is None or halved[0].n_v > most:
+            break
+        tiling, x = mend_triangles(*halved)
+    return tiling, x
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """The edges of a film: n_e of them, and those of each triangle.
+
+    Attributes
+    ----------
+    of_triangles : (n_t, 3) int, those from each corner to the next
+    middles : (n_e, 3) float
+    lengths : (n_e,) float
+    inside : (n_e,) bool, whether they belong to two triangles
+    """
+
+    of_triangles: IntArray
+    middles: FloatArray
+    lengths: FloatArray
+    inside: BoolArray
+
+    @classmethod
+    def of(cls, tiling: Tiling, x: FloatArray) -> _Edges:
+        """Return those of a film (n_v, 3)."""
+        corners = tiling.triangles
+        ends = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2), axis=2)
+        first, place, count = np.unique(
+            ends @ (tiling.n_v, 1), return_inverse=True, return_counts=True
+        )
+        one, other = x[first // tiling.n_v], x[first % tiling.n_v]
+        return cls(
+            place.reshape(corners.shape),
+            0.5 * (one + other),
+            np.linalg.norm(one - other, axis=1),
+            count == 2,
+        )
+
+
+def _halved(
+    tiling: Tiling, x: FloatArray, sizes: EdgeSizes
+) -> tuple[Tiling, FloatArray] | None:
+    """Return a film some of whose edges that are too long are halved; None if none is.
+
+    Those that are the longest such edge of both their triangles (Rivara 1984).
+    """
+    edges = _Edges.of(tiling, x)
+    long = edges.inside & (edges.lengths > sizes.at(edges.middles))
+    if not long.any():
+        return None
+    # Ranks, in place of lengths: on a mesh with a symmetry these are equal in pairs.
+    rank = np.zeros(len(long), dtype=np.int64)
+    rank[np.flatnonzero(long)[np.argsort(edges.lengths[long])]] = 1 + np.arange(long.sum())
+    side = rank[edges.of_triangles].argmax(axis=1)
+    longest = np.take_along_axis(edges.of_triangles, side[:, None], axis=1)[:, 0]
+    halved = long & (np.bincount(longest, minlength=len(long)) == 2)
+    number = tiling.n_v + np.cumsum(halved) - 1
+    cut = halved[longest]
+    turn = (side[cut, None] + np.arange(3)) % 3
+    one, other, apex = np.take_along_axis(tiling.triangles[cut], turn, axis=1).T
+    middle = number[longest[cut]]
+    parts = [(one, middle, apex), (middle, other, apex)]
+    triangles = [tiling.triangles[~cut], *(np.column_stack(part) for part in parts)]
+    more = np.arange(tiling.n_v, tiling.n_v + halved.sum())
+    finer = Tiling(
+        np.concatenate(triangles), tiling.loop, np.concatenate([tiling.interior, more])
+    )
+    return finer, np.vstack([x, edges.middles[halved]])

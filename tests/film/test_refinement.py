@@ -1,0 +1,113 @@
+"""Finer triangles near places of a film: which edges, and that it stays the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.film import make_film
+from eulerplateau.film.refinement import EdgeSizes, refined
+from eulerplateau.film.tiling import Tiling
+from eulerplateau.mesh import Disk
+from eulerplateau.mesh.disk import trace_disk
+from tests.helpers import shapes
+
+MESH = shapes.mesh_of(*shapes.disk_points(8))
+PLACES = np.array([[0.02, 0.01, 0.0], [-0.05, 0.0, 0.0]])
+FINEST = 0.003
+MANY = 10_000
+
+
+def tiling_of(mesh: Disk) -> Tiling:
+    return Tiling(mesh.triangles, mesh.loop, mesh.interior)
+
+
+def finer(mesh: Disk, x: FloatArray, most: int = MANY) -> tuple[Tiling, FloatArray]:
+    return refined(tiling_of(mesh), x, EdgeSizes(PLACES, FINEST), most)
+
+
+def saddle(x: FloatArray) -> FloatArray:
+    return np.column_stack([x[:, 0], x[:, 1], 8 * x[:, 0] * x[:, 1]])
+
+
+@pytest.mark.parametrize("bent", [False, True])
+def test_a_refined_film_is_a_disk_on_the_same_loop(bent: bool) -> None:
+    x = saddle(MESH.x) if bent else MESH.x
+    tiling, after = finer(MESH, x)
+    assert tiling.n_v == len(after) > MESH.n_v
+    assert trace_disk(len(after), tiling.triangles).tolist() == MESH.loop.tolist()
+    assert tiling.loop.tolist() == MESH.loop.tolist()
+    assert after[MESH.loop].tolist() == x[MESH.loop].tolist()
+    inside = np.setdiff1d(np.arange(len(after)), MESH.loop)
+    assert tiling.interior.tolist() == inside.tolist()
+
+
+def test_a_flat_film_keeps_its_area_and_no_triangle_is_turned_over() -> None:
+    tiling, after = finer(MESH, MESH.x)
+    sides, before = tiling.sides(after), tiling_of(MESH).sides(MESH.x)
+    assert sides.areas.sum() == pytest.approx(before.areas.sum(), rel=1e-13)
+    assert (sides.normals @ before.normals[0] > 0.99).all()
+
+
+def test_edges_inside_are_as_short_as_they_should_be() -> None:
+    """But for what sliding has lengthened since: less than twice."""
+    tiling, x = finer(MESH, MESH.x)
+    disk = MESH.with_triangles(tiling.triangles)
+    one, other = x[disk.interior_edges.T]
+    lengths = np.linalg.norm(one - other, axis=1)
+    middles = 0.5 * (one + other)
+    sizes = EdgeSizes(PLACES, FINEST).at(middles)
+    assert (lengths <= 2 * sizes).all()
+    near = np.linalg.norm(middles[:, None] - PLACES, axis=2).min(axis=1) < FINEST
+    assert np.median(lengths[near]) < FINEST
+
+
+def test_edges_grow_in_proportion_to_their_distance() -> None:
+    sizes = EdgeSizes(PLACES[:1], FINEST)
+    away = PLACES[0] + np.outer([0.1, 0.2, 0.4], [0.0, 0.0, 1.0])
+    close, middling, far = sizes.at(away)
+    assert sizes.at(PLACES)[0] == FINEST
+    assert middling / close == pytest.approx(2.0)
+    assert far / close == pytest.approx(4.0)
+
+
+def test_what_is_fine_enough_is_left_alone_and_what_would_be_too_much_not_begun() -> None:
+    tiling, x = finer(MESH, MESH.x)
+    again, same = refined(tiling, x, EdgeSizes(PLACES, FINEST), MANY)
+    assert again is tiling
+    assert same is x
+    assert finer(MESH, MESH.x, MESH.n_v)[0].n_v == MESH.n_v
+    assert finer(MESH, MESH.x, MESH.n_v + 60)[0].n_v <= MESH.n_v + 60
+
+
+def test_a_soap_film_has_shapes_of_its_mesh_and_finer_ones() -> None:
+    film = make_film(MESH, "area")
+    shape = film.refined(MESH.shape, PLACES, FINEST)
+    assert len(shape.x) > MESH.n_v
+    for each in (shape, MESH.shape, shape):
+        energy, gradient = film.energy_gradient(each, 2.0)
+        assert energy == pytest.approx(film.energy_gradient(MESH.shape, 2.0)[0])
+        assert gradient.shape == each.x.shape
+
+
+@pytest.mark.parametrize("model", ["springs", "dirichlet"])
+def test_films_tied_to_their_mesh_are_not_refined(model: str) -> None:
+    film = make_film(MESH, model)
+    assert film.refined(MESH.shape, PLACES, FINEST) is MESH.shape
+
+
+def test_a_film_kept_in_its_plane_is_not_refined() -> None:
+    film = make_film(MESH, "area", in_plane=True)
+    assert film.refined(MESH.shape, PLACES, FINEST) is MESH.shape
+
+
+def test_a_mesh_takes_finer_triangles_on_its_loop_and_its_own_again() -> None:
+    tiling, _ = finer(MESH, MESH.x)
+    disk = MESH.with_triangles(tiling.triangles)
+    assert disk.n_v == tiling.n_v
+    assert disk.x[MESH.loop].tolist() == MESH.x[MESH.loop].tolist()
+    areas = tiling.sides(disk.x).areas
+    assert areas.sum() == pytest.approx(tiling_of(MESH).sides(MESH.x).areas.sum())
+    back = disk.with_triangles(MESH.triangles)
+    np.testing.assert_array_equal(back.x, MESH.with_triangles(MESH.triangles).x)

@@ -1,0 +1,128 @@
+"""Films that are finer where strands of a thick loop cross."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.conformal.contact_eight import refined, touching
+from eulerplateau.mesh import Disk, mesh_polygon
+from eulerplateau.solvers import Equilibrium, Problem, solve, sweep
+from tests.helpers import shapes
+
+# Edges of the loop, 1/48, are more than twice as long as the line is thick.
+LOAD, THICK = 1700.0, 0.008
+MESH = shapes.mesh_of(*shapes.disk_points(8))
+
+
+def eight(mesh: Disk, thick: float) -> FloatArray:
+    """A loop (n_b, 3) whose strands cross once, farther apart than the line is thick."""
+    t = 2 * np.pi * np.cumsum(mesh.rest_lengths)
+    x = np.column_stack([0.2 * np.sin(t), 0.1 * np.sin(2 * t), thick * np.cos(t)])
+    return x / float(np.linalg.norm(np.roll(x, -1, axis=0) - x, axis=1).sum())
+
+
+def problem_of(diameter: float = THICK, *, refine: bool = True) -> Problem:
+    return Problem(MESH, "area", diameter=diameter, refine=refine)
+
+
+def from_eight(problem: Problem, load: float) -> Equilibrium:
+    tied, diameter = problem.tied_film(), problem.loop.diameter
+    assert tied is not None
+    assert diameter is not None
+    return solve(problem, load, tied.shape(eight(problem.disk, diameter)))
+
+
+@cache
+def found(refine: bool) -> Equilibrium:
+    return from_eight(problem_of(refine=refine), LOAD)
+
+
+def test_vertices_are_added_inside_near_the_contact_and_nothing_else_changes() -> None:
+    plain, finer = found(False), found(True)
+    assert plain.is_minimum
+    assert finer.is_minimum
+    assert len(plain.shape.x) == MESH.n_v < len(finer.shape.x)
+    assert finer.shape.loop.tolist() == MESH.loop.tolist()
+    assert finer.length_error < 1e-14
+    assert finer.contacts is not None
+    assert len(finer.contacts) == 1
+    assert finer.contacts.smallest_gap > -1e-11
+    # Half of the new ones nearer than half of the old ones.
+    place = finer.contacts.points.mean(axis=(0, 1))
+    away = np.linalg.norm(finer.shape.x - place, axis=1)
+    assert np.median(away[MESH.n_v :]) < 0.5 * np.median(away[: MESH.n_v])
+
+
+def test_a_finer_film_has_less_area_and_so_less_energy() -> None:
+    """It may be bent wherever the coarse one may, and elsewhere too."""
+    plain, finer = found(False), found(True)
+    assert finer.film_energy < plain.film_energy
+    assert finer.energy < plain.energy
+
+
+def test_strands_push_with_the_slope_of_the_refined_film_s_energy() -> None:
+    finer, h = found(True), 1e-4
+    assert finer.contacts is not None
+    wide, narrow = (solve(problem_of(THICK + way * h), LOAD, finer) for way in (1, -1))
+    assert len(wide.shape.x) == len(narrow.shape.x) == len(finer.shape.x)
+    slope = (wide.energy - narrow.energy) / (2 * h)
+    assert finer.contacts.force == pytest.approx(slope, rel=1e-4)
+
+
+def test_a_film_that_is_fine_enough_is_left_alone() -> None:
+    finer = found(True)
+    again = solve(problem_of(), LOAD, finer)
+    assert again.shape.triangles.tolist() == finer.shape.triangles.tolist()
+    assert again.energy == pytest.approx(finer.energy, rel=1e-13)
+    assert problem_of(0.05).refines
+    wide = from_eight(problem_of(0.05), LOAD)
+    assert wide.contacts is not None
+    assert len(wide.contacts) == 1
+    assert len(wide.shape.x) == MESH.n_v
+
+
+def test_where_strands_have_parted_the_film_is_its_mesh_s_again() -> None:
+    opened = solve(problem_of(), 300.0, found(True))
+    assert opened.contacts is not None
+    assert len(opened.contacts) == 0
+    assert len(opened.shape.x) == MESH.n_v
+    assert opened.energy == pytest.approx(solve(problem_of(), 300.0).energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("film", ["area", "springs"])
+def test_a_problem_that_does_not_refine_takes_of_a_refined_shape_its_loop(
+    film: str,
+) -> None:
+    problem = Problem(MESH, film, refine=False)
+    tied = problem.tied_film()
+    assert tied is not None
+    taken = solve(problem, LOAD, found(True).shape)
+    assert len(taken.shape.x) == MESH.n_v
+    alike = solve(problem, LOAD, tied.shape(found(True).shape.x_loop))
+    assert taken.energy == pytest.approx(alike.energy, rel=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("vertices", [700, 960])
+def test_a_finer_film_halves_the_error_of_the_force_of_a_thin_line(vertices: int) -> None:
+    """Or more, and is a film where the mesh's own lies in folds.
+
+    The loop's edges are four to six times as long as the line is thick, as they were.
+    """
+    loads, thick = (1900.0, 1400.0, 1000.0, 800.0, 600.0), 0.001
+    values = {"load": loads[-1], "diameter": thick, "twist_ratio": 0.0, "link": 0.0}
+    exact = refined(touching(values))[1].force
+    mesh = mesh_polygon("ellipse", aspect=2.0, vertices=vertices, grading=5.0)
+    errors = []
+    for refine in (False, True):
+        problem = Problem(mesh, "area", diameter=thick, refine=refine)
+        *_, last = sweep(problem, loads, from_eight(problem, loads[0]))
+        assert last.contacts is not None
+        assert len(last.contacts) == 1
+        errors.append(abs(last.contacts.force - exact))
+    assert last.is_minimum
+    assert errors[1] < 0.5 * errors[0]

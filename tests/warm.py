@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from eulerplateau.branches.conformal import Start, rod_film
 from eulerplateau.cells import Cell, regular_sites, solve_cell, strands_near
 from eulerplateau.exact import relax, relax_in_plane
 from eulerplateau.mesh import film_touches
@@ -34,6 +35,7 @@ def warm() -> None:
     ellipse = np.stack([1.3 * np.cos(angle), np.sin(angle)], axis=1)
     relax_in_plane(ellipse, 1600.0, 16, 2)
     relax(np.pad(ellipse, ((0, 0), (0, 1))), 1600.0, 8)
+    rod_film(Start.DISK, 1000.0, 0.75, 0.2)
     cell = solve_cell(Cell(regular_sites(3), 8), 10.0, 60.0)
     strands_near(cell.x)
 

@@ -1,9 +1,10 @@
 """True soap films bounded by an elastic loop, to spectral accuracy (docs/true-film.md).
 
     relaxation.py   `relax`: downhill from a start to a film, on kernels.py
-    basis.py        loops as trigonometric polynomials, and their symmetry; grading.py:
-                    grids for narrow waists; sector.py: the part that symmetry repeats
-    energy.py       bending, length, area and their derivatives
+    basis.py        loops as trigonometric polynomials; families.py: their symmetry;
+                    grading.py: grids for narrow waists; sector.py: the part that symmetry
+                    repeats
+    energy.py       bending, length, area and their derivatives; writhe.py: the writhe
     equilibrium.py  Newton's method to an equilibrium, stable or not; gauge.py: motions that
                     change nothing
     branch.py       branches: followed, located, switched; second_variation.py: stability

@@ -21,9 +21,8 @@ from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability, Status
 from eulerplateau.solvers.models import Model, Models
 from eulerplateau.solvers.second_variation import NewtonStep, TangentModel
-from eulerplateau.solvers.trust_region import trust_region_step
+from eulerplateau.solvers.trust_region import FIRST_RADIUS, trust_region_step
 
-FIRST_RADIUS = 0.05
 SMALLEST_RADIUS = 1e-12
 _LARGEST_RADIUS = 0.5
 

@@ -6,6 +6,9 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 
+# The radius that a descent begins with.
+FIRST_RADIUS = 0.05
+
 
 def trust_region_step(
     eigenvalues: FloatArray, gradient: FloatArray, radius: float

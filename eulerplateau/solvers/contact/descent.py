@@ -21,7 +21,6 @@ from eulerplateau.loop import Gaps, LoopEnergy, Strands, with_gaps_held
 from eulerplateau.solvers.contact.keeping import CLOSED, Keeping, Touching
 from eulerplateau.solvers.contact.program import Program
 from eulerplateau.solvers.descent import (
-    FIRST_RADIUS,
     SMALLEST_RADIUS,
     accepted,
     at_rounding,
@@ -36,6 +35,7 @@ from eulerplateau.solvers.second_variation import (
     loosened,
     stability,
 )
+from eulerplateau.solvers.trust_region import FIRST_RADIUS
 
 # Gaps of less than so many diameters are looked at when a step is made.
 _REACH = 1.0

@@ -26,8 +26,8 @@ from eulerplateau.loop import (
     spread,
     with_gaps_held,
 )
-from eulerplateau.solvers.descent import FIRST_RADIUS
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
+from eulerplateau.solvers.trust_region import FIRST_RADIUS
 
 # A gap, in units of L, that is closed, and by which part of the diameter strands may
 # overlap before they are pushed back.

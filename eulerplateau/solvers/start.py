@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from copy import copy
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 from eulerplateau.mesh import Disk, Shape
-from eulerplateau.solvers.problem import Problem
+
+if TYPE_CHECKING:
+    from eulerplateau.solvers.problem import Problem
 
 _SIZE = 1e-3
 

@@ -243,8 +243,9 @@ def _of_one_mesh(first: VtpFile, other: VtpFile) -> bool:
     """Return whether two shapes have one loop and, but for refinement, one mesh."""
     if not np.array_equal(first.lines[0], other.lines[0]):
         return False
-    one, another = (shape.field_data.get(_REST_MESH) for shape in (first, other))
-    refined = one is not None and np.array_equal(one, another)
+    none = np.empty(0)
+    one, another = (shape.field_data.get(_REST_MESH, none) for shape in (first, other))
+    refined = len(one) > 0 and np.array_equal(one, another)
     return refined or len(first.points) == len(other.points)
 
 

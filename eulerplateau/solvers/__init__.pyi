@@ -33,7 +33,6 @@ from .solving import (
 )
 from .start import (
     displaced as displaced,
-    on_its_mesh as on_its_mesh,
     smooth_kick as smooth_kick,
 )
 from .tangent_coordinates import Columns as Columns

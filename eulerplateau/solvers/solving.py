@@ -209,7 +209,7 @@ def _fitting(problem: Problem, shape: Shape) -> Shape:
         return shape
     if len(shape.x) < problem.disk.n_v:
         return problem.shape(shape.x)
-    return shape if problem.refines else coarse(problem, shape)
+    return shape if problem.refines else coarse(problem.tied_film(), shape)
 
 
 def _tensions(problem: Problem, tensions: ArrayLike) -> FloatArray:

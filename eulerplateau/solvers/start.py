@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from copy import copy
-
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
+from eulerplateau.film import FilmOfLoop
 from eulerplateau.mesh import Disk, Shape
-from eulerplateau.solvers.problem import Problem
 
 _SIZE = 1e-3
 
@@ -40,20 +38,12 @@ def displaced(mesh: Disk, displacement: float, seed: int) -> FloatArray:
     return mesh.x + np.outer(displacement * noise, across)
 
 
-def on_its_mesh(problem: Problem) -> Problem:
-    """Return a problem whose films are not refined."""
-    made = copy(problem)
-    object.__setattr__(made, "refines", False)
-    return made
+def coarse(tied: FilmOfLoop | None, shape: Shape) -> Shape:
+    """Return a shape that was refined on the vertices of its mesh, across the same loop.
 
-
-def coarse(problem: Problem, shape: Shape) -> Shape:
-    """Return a shape that has more vertices than its problem's disk, on those of the disk.
-
-    Across the same loop; its triangles are those of the mesh at rest. Raises SpecError
-    where these span no film.
+    By a film tied to the mesh at rest, whose triangles it has then. Raises SpecError where
+    there is none.
     """
-    tied = problem.tied_film()
     if tied is None:
         raise SpecError("start", "has other vertices than the mesh, which spans no film")
     return tied.shape(shape.x_loop)

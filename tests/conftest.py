@@ -23,8 +23,16 @@ ROOT = Path(__file__).parents[1]
 # again and again.
 gc.disable()
 
-# Files that ask one exploration, a few seconds' work: one process has them all.
-SHARING = ("test_exploration", "test_special", "test_continuation")
+# Files that ask one exploration, or the syntax trees of all files, a few seconds' work: one
+# process has them all.
+SHARING = (
+    "test_exploration",
+    "test_special",
+    "test_continuation",
+    "test_layers",
+    "test_requirements",
+    "test_seam",
+)
 # The longest files, so that on several cores none is left over at the end.
 LONGEST = (
     "test_docs",

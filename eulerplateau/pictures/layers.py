@@ -13,7 +13,6 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
-from eulerplateau.mesh import crossing_pairs
 
 # Parts of the picture's extent below which lengths, and of its square areas, are rounding.
 _ROUNDING = 1e-9
@@ -34,6 +33,9 @@ def cut_where_crossing(x: FloatArray, triangles: IntArray) -> tuple[FloatArray, 
     corners : (n, 3, 3) float
     parents : (n,) int, numbers of `triangles`
     """
+    # Numba, which it loads, is for figures with films drawn as vectors alone.
+    from eulerplateau.mesh import crossing_pairs
+
     corners = x[triangles]
     pairs = crossing_pairs(x, triangles)
     cut = {int(one): [corners[one]] for one in np.unique(pairs)}

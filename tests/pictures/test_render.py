@@ -62,13 +62,14 @@ def run(tmp_path_factory: pytest.TempPathFactory, mesh: Disk) -> Path:
 
 
 # The child's module once for each kind of picture: VTK takes its time to start. Smaller
-# pictures, and half as many frames as go around, show as much.
+# pictures, and half as many frames as go around, show as much. None of it needs numba.
 DRAW = """
 import json, runpy, sys
 from eulerplateau.pictures.render import pictures
 pictures._WIDTH, pictures._FRAME_WIDTH, pictures._TURN_FRAMES = 600, 280, 24
 for sys.argv[1:] in json.loads(sys.argv[1]):
     runpy.run_module("eulerplateau.pictures.render", run_name="__main__")
+assert "numba" not in sys.modules
 """
 EVERY = tuple(range(N_SHAPES))
 BOTH = (FLAT, FOLDED)

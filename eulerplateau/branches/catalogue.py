@@ -29,6 +29,7 @@ from eulerplateau.branches.film_family import (
     equilibrium,
     family_on,
     likeness_of,
+    on_its_mesh,
 )
 from eulerplateau.branches.likeness import Likeness, symmetry_of
 from eulerplateau.branches.loop_starts import circle, displaced, random_loop
@@ -104,6 +105,7 @@ def catalogue_at(
     Those of Morse index up to plan.index that the mesh resolves. `searched` is called after
     each of the 2 plan.starts searches.
     """
+    problem = on_its_mesh(problem)
     same = likeness_of(problem, plan.distance)
     family = family_on(problem, problem.film.of_loop(problem.disk.shape), "load", load)
     finder = _Finder(problem, load, plan, same, searched, family, *_ways(problem))

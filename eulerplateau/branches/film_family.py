@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -20,6 +21,13 @@ from eulerplateau.solvers import Equilibrium, Problem, Status
 if TYPE_CHECKING:
     from eulerplateau.branches.contact import Contact
     from eulerplateau.loop import Contacts
+
+
+def on_its_mesh(problem: Problem) -> Problem:
+    """Return the problem with films that are not refined, as those of a family are not."""
+    made = copy(problem)
+    object.__setattr__(made, "refines", False)
+    return made
 
 
 class NoContact:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -22,6 +21,7 @@ from eulerplateau.branches.film_family import (
     family_near,
     family_of,
     family_on,
+    on_its_mesh,
 )
 from eulerplateau.branches.point import BranchPoint, first_point, point_near
 from eulerplateau.branches.progress import Arrays, progress_from
@@ -136,7 +136,7 @@ def first_equilibrium(
     It lies on the disk's own triangles: what the way there has made of them is no part of
     its state. Raises SpecError where there is none.
     """
-    found = solve(_on_its_mesh(problem), load, start)
+    found = solve(on_its_mesh(problem), load, start)
     if found.status not in _EQUILIBRIA:
         value, lost = problem.value(parameter, load), found.status.value
         raise SpecError(
@@ -144,13 +144,6 @@ def first_equilibrium(
             f"no equilibrium found at {value:g} ({lost}): start elsewhere",
         )
     return replace(found, shape=problem.disk.shape.moved(found.shape.x))
-
-
-def _on_its_mesh(problem: Problem) -> Problem:
-    """Return a problem whose films are not refined."""
-    made = copy(problem)
-    object.__setattr__(made, "refines", False)
-    return made
 
 
 def explore(

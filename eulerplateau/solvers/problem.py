@@ -229,12 +229,10 @@ class Problem:
     ) -> Equilibrium:
         """Record a shape with all its numbers computed by the kernels on the full mesh."""
         film, pull = self.film.energy_gradient(shape, load)
-        bending = self.bending_energy(shape)[0]
-        terms = self.loop.terms.items()
+        bending, terms = self.bending_energy(shape)[0], self.loop.terms.items()
         loop = {name: term.energy(shape.x_loop) for name, term in terms}
         pulls = np.abs(pull).max(axis=1)
-        inside = np.delete(pulls, shape.loop).max(initial=0.0)
-        strongest = pulls.max()
+        inside, strongest = np.delete(pulls, shape.loop).max(initial=0.0), pulls.max()
         return Equilibrium(
             shape=shape,
             tensions=tensions,
@@ -266,9 +264,8 @@ class Problem:
 
     def unusable_start(self, shape: Shape, load: float) -> Equilibrium | None:
         """Return the record of a start no solver can work with, or None."""
-        if np.isfinite(shape.x).all() and abs(load) <= LARGEST_LOAD:
-            return None
-        return not_finite(shape, load)
+        usable = np.isfinite(shape.x).all() and abs(load) <= LARGEST_LOAD
+        return None if usable else not_finite(shape, load)
 
     def classified(self, found: Equilibrium) -> Equilibrium:
         """Return `found`; UNRESOLVED if it converged to a loop that its mesh cannot carry.

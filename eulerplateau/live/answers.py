@@ -80,7 +80,6 @@ def opening(name: str, varied: Sequence[Varied], shape: Shape) -> dict[str, Any]
         "varied": [
             {
                 "key": each.key,
-                "symbol": each.name.symbol,
                 "unit": each.name.unit,
                 "low": each.low,
                 "high": each.high,

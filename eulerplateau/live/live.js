@@ -14,9 +14,11 @@ let mesh = null; // { loop }: what never changes
 let tiles = null;
 let normal = null; // of the plane next to the film
 let asked = 0; // numbers what is asked
+let answered = 0, wished = 0; // the last wish that was answered, and the last there was
 const askedAt = new Map(); // when a slider asked
 const lastAsked = new Map(); // the number of what each slider asked for last, by its key
 let held = null; // the key of the slider that is held
+let typing = null; // the key of the number that is typed
 let socket = null;
 const cells = new Map(); // of the numbers, by their keys
 let last = null; // the row that is to be shown
@@ -26,6 +28,10 @@ let inSoftware = false; // no graphics card draws
 let settling = null; // until the film is drawn finely
 // So long after the last film; and pixels each way while films come, of those there are.
 const SETTLING = 300, COARSE = 0.5;
+let seeking = null; // until it is said that a film takes long
+let saidUntil = 0; // the time up to which what was said stays
+// Milliseconds of what takes long, and of what one has to read.
+const LONG = 500, READ = 4000;
 
 function connect() {
   socket = new WebSocket(new URL("talk", location.href.replace(/^http/, "ws")));
@@ -35,7 +41,8 @@ function connect() {
     else show(told);
   });
   socket.addEventListener("close", () => {
-    say("The film is no longer served: eulerplateau live has ended.", true);
+    clearTimeout(seeking);
+    say("The film is no longer served: eulerplateau live has ended.", { failed: true });
     document.body.dataset.state = "closed";
     for (const control of document.querySelectorAll("#varied input, nav button")) {
       control.disabled = true;
@@ -49,6 +56,17 @@ function send(what) {
   socket.send(JSON.stringify({ ...what, asked }));
 }
 
+// What a slider, a number or a button asks for.
+function wish(what) {
+  send(what);
+  wished = asked;
+  if (!seeking) seekingSoon();
+}
+
+function seekingSoon() {
+  seeking = setTimeout(() => say("Seeking the film ...", { reading: 0 }), LONG);
+}
+
 // The first that is told: what can be varied, and how shapes are decoded.
 function open(told) {
   about = told;
@@ -56,7 +74,7 @@ function open(told) {
   mesh = { loop: decode(about.loop, Uint32Array) };
   about.varied = about.varied.map((each) => {
     const known = QUANTITIES.film.find(({ key }) => key === each.key);
-    return { ...each, label: known?.label ?? each.key };
+    return { ...each, label: known.label, symbol: known.symbol };
   });
   find("varied").replaceChildren(...about.varied.map(slider));
   diagram = new VisitedDiagram(find("chart"), about.varied);
@@ -97,7 +115,7 @@ function slider({ key, symbol, unit, low, high }) {
   const follow = (value) => {
     askedAt.set(asked + 1, performance.now());
     lastAsked.set(key, asked + 1);
-    send({ follow: { [key]: value } });
+    wish({ follow: { [key]: value } });
   };
   range.addEventListener("input", () => {
     number.value = short(range.valueAsNumber);
@@ -107,7 +125,9 @@ function slider({ key, symbol, unit, low, high }) {
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
     range.addEventListener(end, () => { held = null; });
   }
+  number.addEventListener("input", () => { typing = key; });
   number.addEventListener("change", () => {
+    typing = null;
     if (Number.isFinite(number.valueAsNumber)) follow(number.valueAsNumber);
   });
   line.append(unit ? `${symbol} (${unit})` : symbol, range, number);
@@ -116,8 +136,12 @@ function slider({ key, symbol, unit, low, high }) {
 
 // What has happened since: points, the shape as it is now, what there is to say.
 function show(told) {
-  for (const line of told.said ?? []) say(line);
+  answered = told.answered;
+  clearTimeout(seeking);
+  seeking = null;
+  if (answered < wished) seekingSoon();
   if (told.points) showPoints(told);
+  for (const line of told.said ?? []) say(line);
   // Drawn when the browser draws; the server then sends what there is by then.
   requestAnimationFrame(() => {
     if (told.points) drawFilm(told);
@@ -125,7 +149,7 @@ function show(told) {
   });
 }
 
-function showPoints({ points, answered }) {
+function showPoints({ points }) {
   const point = points.at(-1);
   if (!quantities.length) chooseQuantities(point.row);
   diagram.add(points);
@@ -135,19 +159,17 @@ function showPoints({ points, answered }) {
     const ahead = held === key || (lastAsked.get(key) ?? 0) > answered;
     if (!ahead) {
       find(`range-${key}`).value = value;
-      if (document.activeElement !== find(`number-${key}`)) {
-        find(`number-${key}`).value = short(value);
-      }
+      if (typing !== key) find(`number-${key}`).value = short(value);
     }
     if (key === about.varied[0].key) {
       const written = [shownText(value), unit].filter(Boolean).join(" ");
       find("headline").textContent = `${about.name}: ${symbol} = ${written}`;
     }
   }
-  showNumbers(point.row);
-  if (point.advice) say(`${point.row.status}: ${point.advice}`, true);
-  else if (point.jumped) say(`The film jumped, and lost energy, on the way here.`);
-  else if (find("said").classList.contains("failed")) say("");
+  showNumbers({ ...point.row, ...point.values });
+  if (point.advice) say(`${point.row.status}: ${point.advice}`, { failed: true, reading: 0 });
+  else if (point.jumped) say("The film jumped, and lost energy, on the way here.");
+  else if (performance.now() > saidUntil) say("");
   // For tests, and for whoever drives the page from outside.
   Object.assign(document.body.dataset, { number: point.number, state: point.row.status });
 }
@@ -173,7 +195,6 @@ function drawFilm(told) {
   if (inSoftware) drawCoarsely();
   film?.show(mesh, tiles, positions, marks && decode(marks, Int8Array), radius);
   document.body.dataset.drawn = told.points.at(-1).number;
-  const { answered } = told;
   if (!askedAt.has(answered)) return;
   latencies.push(performance.now() - askedAt.get(answered));
   if (latencies.length > KEPT) latencies.shift();
@@ -192,7 +213,9 @@ function drawCoarsely() {
 }
 
 function chooseQuantities(row) {
-  quantities = QUANTITIES.film.filter(({ key }) => key in row);
+  const units = new Map(about.varied.map(({ key, unit }) => [key, unit]));
+  quantities = QUANTITIES.film.filter(({ key }) => key in row)
+    .map((quantity) => ({ ...quantity, unit: units.get(quantity.key) || quantity.unit }));
   for (const { label, key } of about.varied) find("x").add(new Option(label, key));
   for (const { label, key, axis } of quantities) {
     if (axis === "y") find("y").add(new Option(label, key));
@@ -225,9 +248,10 @@ function makeLegend() {
   find("legend").replaceChildren(...entries, words);
 }
 
-function say(text, failed = false) {
+function say(text, { failed = false, reading = READ } = {}) {
   find("said").textContent = text;
   find("said").classList.toggle("failed", failed);
+  saidUntil = performance.now() + (text ? reading : 0);
 }
 
 function short(value) {
@@ -241,8 +265,8 @@ function shownText(value) {
 
 for (const what of ["kick", "other", "begin", "save"]) {
   find(what).addEventListener("click", () => {
-    if (what !== "save") say(what === "other" ? "Seeking another stable state ..." : "");
-    send({ click: what });
+    if (what === "other") say("Seeking another stable state ...", { reading: 0 });
+    wish({ click: what });
   });
 }
 for (const axis of ["x", "y"]) find(axis).addEventListener("change", setAxes);

@@ -112,12 +112,12 @@ class Pages:
         new = self._points[-1]["number"] - page.told
         if new > 0:
             points = list(self._points)[-min(new, len(self._points)) :]
-            told |= {"points": points, "shape": self._shape, "answered": page.answered}
+            told |= {"points": points, "shape": self._shape}
             page.told = self._points[-1]["number"]
             if page.tiling != self._tiling:
                 page.tiling = self._tiling
                 told["triangles"] = base64_of(self._triangles.astype("<u4"))
-        return told
+        return told | {"answered": page.answered} if told else told
 
 
 class _Page:

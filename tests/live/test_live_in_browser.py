@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,21 @@ values = [0, 3]
 """
 
 
+ROD = """
+[mesh]
+file = "oval.vtp"
+[film]
+model = "area"
+surface_tension = "25 mN/m"
+[rod]
+young_modulus = "2 GPa"
+diameter = "0.2 mm"
+[sweep]
+parameter = "length"
+values = ["10 cm", "13 cm"]
+"""
+
+
 class Live:
     """A film that is served, and where."""
 
@@ -47,13 +63,19 @@ class Live:
         self.address = process.stdout.readline().strip()
 
 
+@contextmanager
+def served(run: str, folder: Path, disk: Disk) -> Iterator[Live]:
+    write_mesh(disk, folder / "oval.vtp")
+    (folder / "ring.toml").write_text(run)
+    words = "live", folder / "ring.toml", "--no-browser", "--idle", 2
+    with started(command_line(*words)) as process:
+        yield Live(process, folder / "ring")
+
+
 @pytest.fixture
 def live(tmp_path: Path, oval: Disk) -> Iterator[Live]:
-    write_mesh(oval, tmp_path / "oval.vtp")
-    (tmp_path / "ring.toml").write_text(RUN)
-    words = "live", tmp_path / "ring.toml", "--no-browser", "--idle", 2
-    with started(command_line(*words)) as process:
-        yield Live(process, tmp_path / "ring")
+    with served(RUN, tmp_path, oval) as film:
+        yield film
 
 
 @pytest.fixture(scope="module")
@@ -180,6 +202,7 @@ def test_back_and_forth_shows_hysteresis_and_the_other_state(page: Browser) -> N
         page.wait_for(lambda way=way: page.evaluate("diagram.points.at(-1).way") == way)  # type: ignore[misc]
         if way == "other":
             assert numbers(page)["energy E"] != eight
+            page.wait_for(lambda: page.evaluate("find('said').textContent") == "")
 
 
 def test_a_click_saves_the_shape_into_the_run_folder(page: Browser, live: Live) -> None:
@@ -192,16 +215,35 @@ def test_a_click_saves_the_shape_into_the_run_folder(page: Browser, live: Live) 
         )
 
 
-def test_a_value_is_typed_too(page: Browser) -> None:
-    page.evaluate(
-        """((number) => {
-            number.value = "0.5";
-            number.dispatchEvent(new Event("change"));
-        })(document.getElementById("number-link"))"""
-    )
-    page.wait_for(lambda: int(data(page, "drawn")) == 2)
-    assert page.evaluate("diagram.points.at(-1).values.link") == 0.5
-    assert page.evaluate("document.getElementById('range-link').valueAsNumber") == 0.5
+def test_a_value_is_typed_too_and_one_out_of_range_is_its_end(page: Browser) -> None:
+    for count, (typed, there) in enumerate([(0.5, 0.5), (-2.0, 0.0)], start=2):
+        page.evaluate(
+            """((number, typed) => {
+                number.focus();
+                number.value = typed;
+                number.dispatchEvent(new Event("input"));
+                number.dispatchEvent(new Event("change"));
+            })(document.getElementById("number-link"), arguments[0])""",
+            typed,
+        )
+        page.wait_for(lambda count=count: int(data(page, "drawn")) == count)  # type: ignore[misc]
+        assert page.evaluate("diagram.points.at(-1).values.link") == there
+        for name in ("range-link", "number-link"):
+            assert (
+                page.evaluate(f"document.getElementById('{name}').valueAsNumber") == there
+            )
+
+
+def test_a_length_is_shown_in_the_unit_in_which_the_run_has_it(
+    browser: Browser, tmp_path: Path, oval: Disk
+) -> None:
+    with served(ROD, tmp_path, oval) as film:
+        browser.visit(film.address)
+        browser.wait_for(lambda: data(browser, "drawn") == "1")
+        assert browser.evaluate("find('headline').textContent") == "ring: L = 10 cm"
+        assert browser.evaluate("find('varied').textContent") == "L (cm)"
+        assert numbers(browser)["length"] == "10 cm"
+        assert browser.complaints() == []
 
 
 def test_two_pages_share_one_film_and_one_closes_in_the_middle(

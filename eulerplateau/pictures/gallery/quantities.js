@@ -8,6 +8,7 @@ const QUANTITIES = {
     { key: "sigma_hat", label: "tension σ̂", symbol: "σ̂", axis: "x" },
     { key: "link", label: "link", symbol: "Lk", axis: "x" },
     { key: "twist_ratio", label: "rigidities C/B", symbol: "C/B", axis: "x" },
+    { key: "rest_curvature", label: "natural curvature", symbol: "q", axis: "x" },
     { key: "length_m", label: "length", symbol: "L", axis: "x" },
     { key: "surface_tension_N_per_m", label: "surface tension", symbol: "γ", axis: "x" },
     { key: "diameter", label: "diameter d", symbol: "d", unit: "L", axis: "x" },

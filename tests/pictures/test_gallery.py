@@ -32,6 +32,7 @@ from eulerplateau.runs.own_columns import (
 from eulerplateau.runs.record import read_run
 from eulerplateau.runs.rows import (
     BranchRow,
+    CurvedRodRow,
     TwistRow,
     columns,
 )
@@ -174,7 +175,7 @@ def test_columns_the_page_shows_are_those_of_the_table() -> None:
     )
     films, cells = static.read_text().split("cell: [")
     # Of what a row does not have the page says nothing.
-    film: Any = TwistRow
+    film: Any = CurvedRodRow
     for own in (OfRatio, OfContact, OfDiameter, OfLength, OfSurfaceTension):
         film = with_own(own, film)
     for text, row in ((films, film), (cells, CellRow)):

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.conformal.contact_eight import refined, touching
@@ -15,7 +16,21 @@ from tests.helpers import shapes
 
 # Edges of the loop, 1/48, are more than twice as long as the line is thick.
 LOAD, THICK = 1700.0, 0.008
-MESH = shapes.mesh_of(*shapes.disk_points(8))
+# Rings of so many vertices: coarser inside, as graded meshes are.
+RINGS = {48: 1.0, 24: 0.8, 12: 0.5, 6: 0.2}
+
+
+def graded() -> Disk:
+    parts = [
+        radius * np.exp(2j * np.pi * (np.arange(n) / n + 0.3 * (n < 48)))
+        for n, radius in RINGS.items()
+    ]
+    places = np.concatenate([*parts, [0.0]])
+    points = np.column_stack([places.real, places.imag])
+    return shapes.mesh_of(points, Delaunay(points).simplices)
+
+
+MESH = graded()
 
 
 def eight(mesh: Disk, thick: float) -> FloatArray:

@@ -34,9 +34,9 @@ def draw_shapes(
 
     `kind` is STILLS, TURN (an animation of each shape) or SWEEP (one of all shapes) and
     `colour` SIDES, SOAP or a scalar field of the shape files; by default what such runs
-    are coloured by, films by SIDES. An animation is of a format `form`, GIF or MP4. Pictures
-    go to the folder `out`, by default `pictures_folder`. A child that fails or crashes is
-    logged and never raises here.
+    are coloured by, films by SIDES. An animation is of a format `form`, GIF or MP4.
+    Pictures go to the folder `out`, by default `pictures_folder`. A child that fails or
+    crashes is logged and never raises here.
     """
     if not steps:
         return True

@@ -110,8 +110,8 @@ async def _served(service: Service) -> None:
     address = f"http://{HOST}:{port}/{token}/"
     service.say(address)
     if service.open_browser:
-        # A browser that is started here comes back when it is closed, which may be after its
-        # last page: no thread of asyncio, for those are waited for in the end.
+        # A browser that is started here comes back when it is closed, which may be after
+        # its last page: no thread of asyncio, for those are waited for in the end.
         Thread(target=webbrowser.open, args=(address,), daemon=True).start()
     try:
         await _until_the_end(service)

@@ -154,7 +154,9 @@ def _mismatch(errors: Sequence[ErrorDetails]) -> str:
     if first["type"] == "union_tag_invalid":
         tags = first["ctx"]["expected_tags"]
         return f"found '{first['ctx']['tag']}'; should be one of {tags}"
-    if first["type"] == "value_error":
+    if first["type"] == "too_short":
+        expected = f"should hold {first['ctx']['min_length']} or more"
+    elif first["type"] == "value_error":
         expected = str(first["ctx"]["error"])
     else:
         bare = dict.fromkeys(error["msg"].removeprefix("Input ") for error in errors)

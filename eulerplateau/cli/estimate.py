@@ -67,7 +67,7 @@ def estimate(
     as --bending-rigidity. A given diameter is heeded where the loop's sides touch.
     """
     from eulerplateau.errors import SpecError
-    from eulerplateau.exact import Bench
+    from eulerplateau.exact import THICKEST, Bench
     from eulerplateau.threads import one_thread
     from eulerplateau.units import DIAMETER, LENGTH, SURFACE_TENSION
 
@@ -81,12 +81,11 @@ def estimate(
     if poisson is not None and not -1 < poisson <= 0.5:
         raise SpecError("--poisson", f"found {poisson:g}; should be as 0.4, up to 0.5")
     bench = Bench(stiffness, long.value, liquid)
-    try:
-        with one_thread():
-            numbers = _numbers(bench, thick, poisson)
-    except SpecError as error:
-        problem = f"{error.args[-1]}, in units of the loop's length"
-        raise SpecError("--diameter", problem) from None
+    if thick is not None and thick > THICKEST * long.value:
+        most = f"{1e3 * THICKEST * long.value:g} mm, {THICKEST:g} of the loop's length"
+        raise SpecError("--diameter", f"found {diameter!r}; should be at most {most}")
+    with one_thread():
+        numbers = _numbers(bench, thick, poisson)
     click.echo(
         json.dumps(numbers, indent=2) if as_json else "\n".join(_said(numbers, long))
     )

@@ -80,16 +80,24 @@ def fit(
         with one_thread():
             if racket:
                 found = fit_racket(points, wide, level)
+                nearer = found.is_misfit and found.is_farther_than(
+                    fit_outline(points, None, wide, level)
+                )
             else:
                 found = fit_outline(points, lobes, wide, level)
+                nearer = found.is_farther_than(fit_racket(points, wide, level))
     except SpecError as error:
         key, problem = error.args
         raise SpecError(_OPTIONS.get(key, str(outline)), problem) from None
     factor = None if stiffness is None else stiffness / 4 / metres**3
     if as_json:
-        click.echo(json.dumps(_numbers(found, factor, racket), indent=2))
+        numbers = _numbers(found, factor, racket)
+        numbers["misfit"] = nearer or found.is_misfit
+        click.echo(json.dumps(numbers, indent=2))
     else:
         click.echo("\n".join(_lines(found, factor, racket, unit or "")))
+        if nearer or found.is_misfit:
+            click.echo(_doubt(racket, nearer))
     if out is not None:
         from eulerplateau.pictures import draw_outline_fit
 
@@ -163,12 +171,28 @@ def _lines(fit: OutlineFit, factor: float | None, racket: bool, unit: str) -> It
         yield _line("surface tension", fit.strength, scale, _SURFACE_TENSION)
     noise = fit.noise
     alike = ""
-    if noise.correlated > 0:
+    if fit.is_exact:
+        alike = ", rounding only"
+    elif noise.correlated > 0:
         alike = f", {100 * noise.correlated:.0f} % of it alike over {noise.length:.3g}"
     yield f"{'noise':15}  {noise.deviation:10.4g}  of a point{alike}"
     yield f"{'points':15}  {len(fit.distances):10d}"
     if fit.is_circle:
         yield "The outline cannot be told from a circle: its load has an upper bound only."
+
+
+def _doubt(racket: bool, nearer: bool) -> str:
+    """Return what is said of points that are those of another curve."""
+    if nearer and racket:
+        return "The points are much nearer to a film: leave out --racket."
+    if nearer:
+        return "The points are much nearer to a racket's head: try --racket."
+    if racket:
+        return "What is left is no noise: the points are hardly those of a racket's head."
+    return (
+        "What is left is no noise: the points are hardly those of a film. "
+        "Try --edge, --racket, or another -n."
+    )
 
 
 def _line(name: str, estimate: Estimate, factor: float, unit: str) -> str:

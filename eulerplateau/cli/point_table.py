@@ -24,6 +24,8 @@ def read_points(path: Path) -> list[tuple[float, float]]:
         if {"x", "y"} <= set(names):
             places = names.index("x"), names.index("y")
         del lines[0]
+    if not lines:
+        raise SpecError(str(path), "has no points; should have lines of x, y")
     return [_point(line, places) for line in lines]
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from eulerplateau.cli.options import offered
+from eulerplateau.cli.options import offered, writes_to
 from eulerplateau.errors import OutputError, SpecError
 
 _OF_LOOP = "kappa", "kappa_n", "kappa_g", "contact_angle"
@@ -47,6 +47,7 @@ _OF_LOOP = "kappa", "kappa_n", "kappa_g", "contact_angle"
     show_default=True,
     help="Of animations; MP4 needs eulerplateau[mp4].",
 )
+@writes_to("The folder that pictures are written into. Default: DIR/pictures.")
 @click.option("--quiet", is_flag=True, help="No summary: for batches.")
 def render(
     folder: Path,
@@ -56,6 +57,7 @@ def render(
     colour: str | None,
     animate: str | None,
     form: str,
+    out: Path | None,
     quiet: bool,
 ) -> None:
     """Draw the shapes of the run folder DIR, of a sweep or of branches, to DIR/pictures.
@@ -73,6 +75,7 @@ def render(
         check_format,
         chosen_steps,
         draw_shapes,
+        pictures_folder,
         read_field,
     )
     from eulerplateau.runs import read_run, shape_name
@@ -87,7 +90,8 @@ def render(
         chosen = chosen_steps(run, steps, loads)
     if colour not in (None, SIDES, SOAP):
         read_field(folder / shape_name(chosen[0]), colour)
-    if not draw_shapes(folder, chosen, animate or STILLS, colour, form):
-        raise OutputError(folder / "pictures", "the pictures could not all be drawn")
+    out = out or pictures_folder(folder)
+    if not draw_shapes(folder, chosen, animate or STILLS, colour, form, out):
+        raise OutputError(out, "the pictures could not all be drawn")
     if not quiet:
-        click.echo(f"{folder / 'pictures'}: {len(chosen)} shape(s) drawn")
+        click.echo(f"{out}: {len(chosen)} shape(s) drawn")

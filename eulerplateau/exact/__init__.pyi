@@ -4,7 +4,11 @@ from .bench import (
     isotropic_twist_ratio as isotropic_twist_ratio,
 )
 from .bench_changes import Twist as Twist, changes as changes, state as state
-from .checks import checked_diameter as checked_diameter, finite as finite
+from .checks import (
+    THICKEST as THICKEST,
+    checked_diameter as checked_diameter,
+    finite as finite,
+)
 from .conformal.equilibrium import ConformalFilm as ConformalFilm
 from .conformal.relaxation import relax as relax
 from .estimates import Estimate as Estimate

@@ -12,7 +12,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
 
 # The largest diameter of a loop, in units of its length.
-_THICKEST = 0.1
+THICKEST = 0.1
 
 
 def whole_number(name: str, value: object, least: int, most: int | None = None) -> int:
@@ -42,8 +42,8 @@ def finite(name: str, value: object) -> float:
 def checked_diameter(value: object) -> float:
     """Return a loop's diameter in units of its length; SpecError for anything else."""
     found = finite("diameter", value)
-    if not 0 < found <= _THICKEST:
-        problem = f"found {found:g}; should be above 0 and at most {_THICKEST:g}"
+    if not 0 < found <= THICKEST:
+        problem = f"found {found:g}; should be above 0 and at most {THICKEST:g}"
         raise SpecError("diameter", problem)
     return found
 

@@ -42,6 +42,11 @@ class Load:
         return self.tension_per_load / SPRING_TENSION * load
 
     @property
+    def word(self) -> str:
+        """What it is in a word."""
+        return "load"
+
+    @property
     def unit(self) -> str:
         """That in which it is shown: a pure number has none."""
         return ""

@@ -16,6 +16,7 @@ import webbrowser
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from importlib.resources import files
+from threading import Thread
 from typing import TYPE_CHECKING
 
 from eulerplateau.errors import MissingLibraryError
@@ -108,15 +109,13 @@ async def _served(service: Service) -> None:
     worker.start(lambda done: loop.call_soon_threadsafe(pages.tell, done))
     address = f"http://{HOST}:{port}/{token}/"
     service.say(address)
-    opening = None
     if service.open_browser:
-        # A browser in the terminal would not come back.
-        opening = loop.run_in_executor(None, webbrowser.open, address)
+        # A browser that is started here comes back when it is closed, which may be after
+        # its last page: no thread of asyncio, for those are waited for in the end.
+        Thread(target=webbrowser.open, args=(address,), daemon=True).start()
     try:
         await _until_the_end(service)
     finally:
-        if opening is not None:
-            opening.cancel()
         await runner.cleanup()
 
 

@@ -143,19 +143,23 @@ def _handles(runs: Sequence[Run]) -> list[Artist]:
     ]
     if any(run.branches for run in runs):
         handles.append(Line2D([], [], color="0.3", linestyle=DASHES, label="unstable"))
-    if any(_falls(run) for run in runs):
-        handles.append(Line2D([], [], color="0.3", linestyle=DASHES, label="load falling"))
+    falling = dict.fromkeys(name for run in runs for name in _falling(run))
+    for name in falling:
+        handles.append(Line2D([], [], color="0.3", linestyle=DASHES, label=name))
     if any(not row.converged for run in runs for row in run.rows):
         handles.append(Line2D([], [], color="0.3", label="not converged", **CROSS))
     return handles
 
 
-def _falls(run: Run) -> bool:
-    """Whether it is a sweep, a part of which is drawn as one whose load falls."""
+def _falling(run: Run) -> list[str]:
+    """Return what the parts of a sweep are called that are drawn with its load falling."""
     if run.branches:
-        return False
-    legs = [leg.pieces(leg.values(lambda row: row.energy)) for leg in run.series]
-    return any(not piece.solid for pieces in legs for piece in pieces)
+        return []
+    return [
+        leg.name
+        for leg in run.series
+        if any(not piece.solid for piece in leg.pieces(leg.values(lambda row: row.energy)))
+    ]
 
 
 def _shown(run: Run, steps: Sequence[int] | None) -> list[Any]:

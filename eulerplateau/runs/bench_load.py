@@ -99,4 +99,5 @@ def _given(loop: LoopSettings, film: FilmSettings) -> dict[str, Any]:
 
 def _said(varied: str) -> str:
     """Return which keys set the load, with what is varied."""
-    return " with ".join(["[rod]", *(k for name, k in _KEYS.items() if name != varied)])
+    keys = [key for name, key in _KEYS.items() if name != varied]
+    return f"{', '.join(['[rod]', *keys[:-1]])} and {keys[-1]}"

@@ -30,6 +30,11 @@ class CellParameter:
         return self.meaning
 
     @property
+    def word(self) -> str:
+        """What it is in a word or two."""
+        return self.meaning.partition(" $")[0]
+
+    @property
     def unit(self) -> str:
         """That in which it is shown: a pure number has none."""
         return ""

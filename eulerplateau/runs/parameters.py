@@ -48,6 +48,11 @@ class LoopParameter:
     energy_rate: Callable[[Any], float]
 
     @property
+    def word(self) -> str:
+        """What it is in a word or two."""
+        return self.column.replace("_", " ")
+
+    @property
     def unit(self) -> str:
         """That in which it is shown: a pure number has none."""
         return ""
@@ -145,6 +150,11 @@ class BenchParameter:
     def error(self, row: Any, error: float) -> float:
         """Return what an error of sigma_hat comes to, in the SI."""
         return float(getattr(row, self.column) * error / (self.power * row.sigma_hat))
+
+    @property
+    def word(self) -> str:
+        """What it is in a word or two."""
+        return self.meaning
 
     @property
     def text(self) -> str:

@@ -34,6 +34,10 @@ class LoadName(Protocol):
         """Its name as a label of an axis."""
 
     @property
+    def word(self) -> str:
+        """What it is in a word or two."""
+
+    @property
     def unit(self) -> str:
         """The unit in which it is shown; empty of a pure number."""
 

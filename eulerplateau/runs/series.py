@@ -99,7 +99,8 @@ class Leg(Series):
     @property
     def name(self) -> str:
         """What tells it from a leg the other way."""
-        return "load rising" if self.rising else "load falling"
+        varied = self.rows[0].load_name.word
+        return f"{varied} {'rising' if self.rising else 'falling'}"
 
     @property
     def group(self) -> str:

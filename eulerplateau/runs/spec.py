@@ -123,6 +123,15 @@ class RunSpec(Settings):
     branches: BranchSettings = BranchSettings()
     catalogue: CatalogueSettings = CatalogueSettings()
 
+    @model_validator(mode="before")
+    @classmethod
+    def _something_is_swept(cls, given: Any) -> Any:
+        known = isinstance(given, dict) and given.keys() <= cls.model_fields.keys()
+        if known and "sweep" not in given:
+            problem = "is missing: it says what is varied, along branches too, as"
+            raise SpecError("sweep", f"{problem} sweep.loads = [1, 1000]")
+        return given
+
     @model_validator(mode="after")
     def _quantity_is_the_films(self) -> RunSpec:
         quantity, load = self.sweep.quantity, FILM_LOADS[self.film.model]

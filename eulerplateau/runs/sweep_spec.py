@@ -83,10 +83,10 @@ class SweepSettings(Settings):
         for key in ("loads", "quantity"):
             if getattr(self, key) is not None:
                 problem = f"should be absent where sweep.parameter is {self.varied!r}"
-                load = "film.load, or what [rod] says"
+                load = "the load is film.load, or what [rod] says"
                 if self.varied in BENCH:
-                    load = "what [rod] and it say"
-                raise SpecError(f"sweep.{key}", f"{problem}: the load is {load}")
+                    load = f"[rod] and the {self.varied.replace('_', ' ')} set the load"
+                raise SpecError(f"sweep.{key}", f"{problem}: {load}")
         if self.values is None:
             raise SpecError("sweep.values", _MISSING)
         check_positive("sweep.values", self.varied, self.in_order())

@@ -119,7 +119,7 @@ def test_what_is_printed_speaks_the_unit_of_the_length() -> None:
         ({"poisson": "0.6"}, "--poisson", "0.4"),
         ({"bending-rigidity": "1 N m^2"}, "--young", "--bending-rigidity"),
         ({"length": "1e200 m"}, "sigma_hat", "units"),
-        ({"diameter": "30 mm"}, "--diameter", "at most 0.1"),
+        ({"diameter": "30 mm"}, "--diameter", "at most 20 mm, 0.1 of the loop's"),
         ({"diameter": "1e-200 m"}, "sigma_hat", "units"),
     ],
 )

@@ -82,8 +82,30 @@ def test_a_racket_s_head(tmp_path: Path) -> None:
     assert found["elastocapillary_length"]["value"] == pytest.approx(size, rel=1e-8)
     assert found["surface_tension"]["value"] == pytest.approx(0.025, rel=1e-8)
     assert found["sigma_hat"] is None
+    assert found["misfit"] is False
     done = run_here("fit", tmp_path / "racket.csv", "--racket", *NYLON)
     assert "(EI/sigma)^(1/3)" in done.stdout
+    assert "of a point, rounding only" in done.stdout
+    # As a film: told, and what to do.
+    assert fitted(tmp_path / "racket.csv", *NYLON)["misfit"] is True
+    done = run_here("fit", tmp_path / "racket.csv", *NYLON)
+    assert done.returncode == 0
+    assert done.stdout.splitlines()[-1].endswith("try --racket.")
+
+
+def test_a_film_is_told_to_be_no_racket_s_head(nylon: Path) -> None:
+    assert fitted(nylon)["misfit"] is False
+    assert fitted(nylon, "--racket")["misfit"] is True
+    done = run_here("fit", nylon, "--racket")
+    assert done.stdout.splitlines()[-1].endswith("leave out --racket.")
+
+
+def test_what_is_no_film_is_told_to_be_none(tmp_path: Path) -> None:
+    path, angles = tmp_path / "ellipse.csv", np.arange(50) * 2 * pi / 50
+    np.savetxt(path, np.stack([20 * np.cos(angles), 10 * np.sin(angles)], 1))
+    done = run_here("fit", path)
+    assert done.returncode == 0
+    assert "hardly those of a film" in done.stdout.splitlines()[-1]
 
 
 @pytest.mark.parametrize(
@@ -114,6 +136,7 @@ def test_slips_are_told_in_a_line(
     ("text", "said"),
     [
         ("", "has no data"),
+        ("x,y\n", "has no points; should have lines of x, y"),
         ("x,y\n1,2\n3\n", "line 3"),
         ("1,2\n3,four\n", "line 2"),
         ("x,y\n" + "1,2\n" * 30, "1 different"),

@@ -55,6 +55,13 @@ def test_command_draws_what_was_chosen(run: Path) -> None:
     assert names == {"shape_0001_soap.png", "shape_0003_soap.png", "sheet_soap.png"}
 
 
+def test_pictures_go_where_the_command_is_told(run: Path, tmp_path: Path) -> None:
+    there = tmp_path / "new" / "pics"
+    assert carried_out(run, "--step", 2, "-o", there) is None
+    assert [path.name for path in there.iterdir()] == ["shape_0002.png"]
+    assert not (run / "pictures" / "shape_0002.png").exists()
+
+
 def test_a_load_means_the_nearest_shape_of_each_leg(tmp_path: Path, mesh: Disk) -> None:
     loads = [0.0, 100.0, 200.0, 300.0, 190.0, 90.0]
     with start(tmp_path) as folder:

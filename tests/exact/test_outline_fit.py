@@ -151,6 +151,27 @@ def test_a_racket_s_head_has_its_size() -> None:
             assert fit.sigma_hat is None
 
 
+@pytest.mark.parametrize("deviation", [0.0, 1e-3, 5e-3])
+def test_what_is_left_of_another_curve_is_no_noise(deviation: float) -> None:
+    random, t = np.random.default_rng(5), np.linspace(0, 2 * np.pi, 80, endpoint=False)
+
+    def seen(x: np.ndarray) -> np.ndarray:
+        return x + deviation * np.ptp(x, axis=0).max() * random.normal(size=x.shape)
+
+    film = seen(planar_film(2, 2000.0).points(t / 2 / np.pi).x)
+    head = seen(Racket().curve(np.empty(0)).points(np.linspace(-5, 5, 80)).x)
+    ellipse = seen(np.stack([np.cos(t), 0.25 * np.sin(t)], -1))
+    assert not fit_outline(film).is_misfit
+    assert not fit_racket(head).is_misfit
+    assert fit_outline(ellipse).is_misfit
+    assert fit_racket(film).is_misfit
+    assert fit_racket(film).is_farther_than(fit_outline(film))
+    if deviation < 2e-3:  # of the misfit's order
+        assert fit_outline(head).is_farther_than(fit_racket(head))
+    assert not fit_outline(film).is_farther_than(fit_racket(film))
+    assert fit_outline(film).is_exact == (deviation == 0)
+
+
 @pytest.mark.parametrize("length", [0.0, 0.03])
 def test_errors_of_a_mean_are_those_of_noise_that_is_alike(length: float) -> None:
     """The variance of a mean, which plain least squares get wrong by a factor of 7."""
@@ -173,6 +194,8 @@ def test_errors_of_a_mean_are_those_of_noise_that_is_alike(length: float) -> Non
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     hits = [hit(number, seed=3) for number in range(72)]
     assert all(one.lobes for one in hits)
+    # Smooth noise may look like another curve; what differs from point to point does not.
+    assert not any(one.misfit for one in hits if one.kind != "smooth")
     for name in QUANTITIES:
         share = np.mean([getattr(one, name) for one in hits])
         # Three standard deviations of 72 tries at 95 %.

@@ -255,7 +255,17 @@ def test_points_are_forgotten_in_the_end(
     with_served(oval, act)
 
 
-def test_it_ends_when_the_last_page_has_been_closed_for_long_enough(oval: Disk) -> None:
+def test_it_ends_when_the_last_page_has_been_closed_for_long_enough(
+    oval: Disk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Even if the browser that it opened stays open.
+    browser_closes, come_back = threading.Event(), list[str]()
+
+    def browser(address: str) -> None:
+        browser_closes.wait(60)
+        come_back.append(address)
+
+    monkeypatch.setattr("webbrowser.open", browser)
     film, addresses = StandIn(oval), list[str]()
     pages = Pages("oval", film.varied, film.at)
     told = threading.Event()
@@ -264,7 +274,7 @@ def test_it_ends_when_the_last_page_has_been_closed_for_long_enough(oval: Disk) 
         addresses.append(address)
         told.set()
 
-    service = Service(pages, Worker(film, film.save), 0.3, False, say)
+    service = Service(pages, Worker(film, film.save), 0.3, True, say)
     ended = list[BaseException | None]()
 
     def run() -> None:
@@ -293,3 +303,5 @@ def test_it_ends_when_the_last_page_has_been_closed_for_long_enough(oval: Disk) 
     server.join(600)
     assert ended == [None]
     assert time.monotonic() - closed > 0.1
+    assert not come_back
+    browser_closes.set()

@@ -97,7 +97,10 @@ def child(run: Path, again: Path) -> subprocess.CompletedProcess[bytes]:
         (run, SWEEP, MP4, "sides", EVERY),
         (again, STILLS, GIF, "sides", (3,)),
     ]
-    calls = [[str(to), *how, *map(str, steps)] for to, *how, steps in wanted]
+    calls = [
+        [str(to), str(to / "pictures"), *how, *map(str, steps)]
+        for to, *how, steps in wanted
+    ]
     command = [sys.executable, "-c", DRAW, json.dumps(calls)]
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     environment["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"

@@ -123,6 +123,7 @@ def test_commands_of_the_page_at_the_bench_print_what_it_says(
     page = DOCS / "bench.md"
     for block in blocks(page, "csv") + blocks(page, "toml"):
         (clone / named(block)).write_text(block)
+    assert (clone / "runs/nylon.toml").read_text() == (ROOT / "runs/nylon.toml").read_text()
     pattern = r"^```sh\n(.*?)^```$(?:\n\n```text\n(.*?)^```$)?"
     found = re.findall(pattern, page.read_text(), re.M | re.S)
     assert len(found) == 3

@@ -139,6 +139,7 @@ def test_what_is_shown_speaks_the_unit_that_was_written(mesh: Path, swept: Path)
     run = read_run(swept)
     assert [row.load for row in run.rows] == pytest.approx([9, 10, 11, 12, 13], rel=1e-14)
     assert run.load.label == r"length $L/\mathrm{cm}$"
+    assert [leg.name for leg in run.series] == ["length rising"]
     assert "length (cm) 9 to 13" in repr(run)
     assert draw_diagram(swept)
     assert "timestep is the load length (cm)" in (swept / "sweep.pvd").read_text()
@@ -236,13 +237,21 @@ def test_an_ensemble_varies_quantities_with_units(mesh: Path, tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("sections", "key", "said"),
     [
-        ({"sweep": {"loads": [1.0]}}, "sweep.loads", "set already"),
+        (
+            {"sweep": {"loads": [1.0]}},
+            "sweep.loads",
+            ".rod., loop.length and film.surface_tension set already",
+        ),
         ({"sweep": LENGTHS, "loop": {"length": 0.2}}, "loop.length", "leave it out"),
         ({"sweep": LENGTHS, "loop": {"alpha": 2.0}}, "loop.alpha", "leave it out"),
         ({"sweep": LENGTHS, "film": {**SOAP, "load": 3.0}}, "film.load", "leave it out"),
         ({"sweep": LENGTHS, "film": {}}, "film.surface_tension", "25 mN/m"),
         ({"sweep": LENGTHS, "rod": None}, "rod", "young_modulus"),
-        ({"sweep": {**LENGTHS, "loads": [1.0]}}, "sweep.loads", "should be absent"),
+        (
+            {"sweep": {**LENGTHS, "loads": [1.0]}},
+            "sweep.loads",
+            ".rod. and the length set the load",
+        ),
         (
             {"sweep": {"parameter": "surface_tension", "values": ["20 mN/m"]}},
             "film.surface_tension",

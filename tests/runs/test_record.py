@@ -170,6 +170,7 @@ def test_branches_and_legs_start_where_they_leave_another(branches: Path) -> Non
     rows = [replace(ROW, step=i, kL3_alpha=v) for i, v in enumerate((1.0, 3.0, 2.0))]
     up, down = read_legs(rows)
     assert (up.rising, down.rising) == (True, False)
+    assert (up.name, down.name) == ("load rising", "load falling")
     assert up.rows[-1] is down.rows[0] is rows[1]
     assert [(leg.first, leg.last, leg.start) for leg in (up, down)] == [
         (0, 1, None),

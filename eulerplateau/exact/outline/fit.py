@@ -36,6 +36,9 @@ from eulerplateau.exact.profiles import Box, Profile
 _FEWEST = 16
 # Noise below this part of the size is rounding.
 _ROUNDING = 1e-13
+# What is left of another curve's outline: few changes of side, however many points there
+# are, or points farther off than a tracing, over the line's length across.
+_FEW_SIDES, _SIDES_PER_POINT, _FAR = 8, 0.2, 0.02
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,36 @@ class OutlineFit:
     def is_circle(self) -> bool:
         """Whether the outline cannot be told from a circle."""
         return self.sigma_hat is not None and self.lobes is None
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the points lie on the line but for rounding."""
+        return bool(np.abs(self.distances).max() <= _ROUNDING * self._across)
+
+    @property
+    def is_misfit(self) -> bool:
+        """Whether what is left of the points is no noise: they are of another curve.
+
+        They lie on one side of the line over an eighth of it, again and again, or their
+        deviation is 2 % of what it measures across.
+        """
+        if self.is_exact:
+            return False
+        sides = np.count_nonzero(np.diff(np.sign(self.distances)))
+        few = sides <= min(_FEW_SIDES, _SIDES_PER_POINT * len(self.distances))
+        return bool(few or self._deviation > _FAR * self._across)
+
+    def is_farther_than(self, other: OutlineFit) -> bool:
+        """Whether the same points lie much nearer to another fit."""
+        return not self.is_exact and self._deviation > sqrt(2) * other._deviation
+
+    @property
+    def _deviation(self) -> float:
+        return float(np.sqrt(np.mean(self.distances**2)))
+
+    @property
+    def _across(self) -> float:
+        return float(np.ptp(self.curve, axis=0).max())
 
 
 def fit_outline(

@@ -6,6 +6,7 @@ from .drawing import (
     SWEEP as SWEEP,
     TURN as TURN,
     draw_shapes as draw_shapes,
+    pictures_folder as pictures_folder,
 )
 from .fields import read_field as read_field
 from .pictures import RunPictures as RunPictures

@@ -23,6 +23,7 @@ from eulerplateau.pictures.render.colours import (
     loop_colours,
     scale_of,
 )
+from eulerplateau.pictures.render.drawing import pictures_folder
 from eulerplateau.pictures.render.fields import read_field
 from eulerplateau.pictures.render.pages import contact_sheet, png
 from eulerplateau.pictures.render.scene import Pixels, Scene
@@ -41,7 +42,8 @@ class RunPictures:
 
     Attributes
     ----------
-    run : its rows; pictures go to the subfolder pictures/ of its folder
+    run : its rows
+    out : the folder that pictures go to
     shapes : one per row, each turned as little as can be from the one before it, in units
         of a loop's length
     places : the numbers of the rows to be shown
@@ -52,6 +54,7 @@ class RunPictures:
     """
 
     run: Run
+    out: Path
     shapes: tuple[Shape, ...]
     places: tuple[int, ...]
     colour: str
@@ -60,10 +63,15 @@ class RunPictures:
 
     @classmethod
     def read(
-        cls, folder: Path, steps: Sequence[int], colour: str | None = None
+        cls,
+        folder: Path,
+        steps: Sequence[int],
+        colour: str | None = None,
+        out: Path | None = None,
     ) -> RunPictures:
         """Read a run, of which `steps` (at least one) are to be shown.
 
+        Pictures go to `out`, by default to the subfolder pictures/ of the run's.
         Raises OutputError if a shape cannot be read, SpecError if there is no such step
         or field.
         """
@@ -78,7 +86,8 @@ class RunPictures:
             fields = {place: read_field(path, colour) for place, path in paths.items()}
         look = stage.fields.get(colour)
         scale = scale_of(colour, list(fields.values()), look) if fields else None
-        return cls(run, _followed(run, stage), tuple(places), colour, fields, scale)
+        out, shapes = out or pictures_folder(folder), _followed(run, stage)
+        return cls(run, out, shapes, tuple(places), colour, fields, scale)
 
     @property
     def stage(self) -> Stage:
@@ -139,13 +148,12 @@ class RunPictures:
         return captioned(pixels, Caption(text, view.words(shape), bar, self.scale))
 
     def _write(self, name: str, suffix: str, content: bytes) -> None:
-        pictures = self.run.folder / "pictures"
         try:
-            pictures.mkdir(exist_ok=True)
+            self.out.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise OutputError(pictures, f"cannot be made: {error.strerror}") from None
+            raise OutputError(self.out, f"cannot be made: {error.strerror}") from None
         coloured = name if self.colour == self.stage.colour else f"{name}_{self.colour}"
-        write_whole(pictures / f"{coloured}.{suffix}", content)
+        write_whole(self.out / f"{coloured}.{suffix}", content)
 
 
 def _followed(run: Run, stage: Stage) -> tuple[Shape, ...]:

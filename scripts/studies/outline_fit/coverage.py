@@ -14,7 +14,10 @@ QUANTITIES = ("sigma_hat", "size", "strength")
 
 @dataclass(frozen=True)
 class Hit:
-    """Whether the intervals of one outline hold the truth; the load's half width."""
+    """Whether the intervals of one outline hold the truth; the load's half width.
+
+    And whether the outline was taken for that of another curve.
+    """
 
     kind: str
     sigma_hat: bool
@@ -22,6 +25,7 @@ class Hit:
     strength: bool
     lobes: bool
     width: float
+    misfit: bool
 
 
 def hit(number: int, seed: int) -> Hit:
@@ -40,5 +44,6 @@ def hit(number: int, seed: int) -> Hit:
         sigma_hat=load.low <= made.sigma_hat <= load.high,
         lobes=fit.lobes == made.lobes,
         width=(load.high - load.low) / 2 / made.sigma_hat,
+        misfit=fit.is_misfit,
         **inside,
     )

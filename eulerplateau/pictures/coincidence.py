@@ -35,7 +35,7 @@ def dash_once(ax: Axes) -> None:
             markers.update_from(line)
             markers.set(linestyle="none", markevery=line.get_markevery(), label=None)
             ax.add_line(markers)
-            line.set(marker="none", ydata=np.where(hidden, np.nan, y))
+            line.set(markevery=[], ydata=np.where(hidden, np.nan, y))
 
 
 def _in_panel(ax: Axes, line: Line2D) -> FloatArray:
@@ -46,7 +46,7 @@ def _in_panel(ax: Axes, line: Line2D) -> FloatArray:
 
 
 def _covered(points: FloatArray, before: Sequence[FloatArray]) -> BoolArray:
-    """Return which of points (n, 2) lie on one of the curves before, none of which turns."""
+    """Return which of points (n, 2) lie on one of the curves before, that do not turn."""
     covered = np.zeros(len(points), dtype=bool)
     x, y = points.T
     for curve in before:

@@ -10,7 +10,8 @@
     planar.py        figures of the exact planar films
     area_fit.py      cell areas over stiffness, with what was fitted to them
     figure.py        labels, colours, sizes, saving: what all figures have in common
-    looks.py         how curves are told apart, and legends
+    looks.py         how curves are told apart, and legends; coincidence.py: dashes of
+                     curves that coincide; numbers.py: where shapes' numbers have room
     alignment.py     shapes turned to lie alike
     render/          stills and animations by VTK, in a child process (child.py)
     gallery/         a run as one page to browse

@@ -104,8 +104,9 @@ def runs_figure(
     )
     if any(shown):
         shapes.draw(parts[0])
-        number_shapes(axes[0], window, runs, shown, kind)
     legend_above(parts[-1], handles)
+    if any(shown):
+        number_shapes(axes[0], window, runs, shown, kind)
     return figure
 
 

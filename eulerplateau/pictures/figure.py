@@ -180,13 +180,20 @@ def save(figure: Figure, path: Path) -> None:
         "svg.hashsalt": "eulerplateau",
         "path.simplify": False,
     }
-    _lay_out(figure, form)
+    _fix_layout(figure, form)
     with rc_context(settings):
         figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
     write_whole(path, content.getvalue())
 
 
-def _lay_out(figure: Figure, form: str) -> None:
+def lay_out(figure: Figure) -> None:
+    """Give the parts of an unfinished figure about the room that they will have."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+
+
+def _fix_layout(figure: Figure, form: str) -> None:
     """Give a figure's parts their room in a format; matplotlib draws it once for that."""
     from matplotlib.backend_bases import get_registered_canvas_class
 

@@ -98,7 +98,9 @@ def onset_figure(runs: Sequence[Run]) -> Figure:
         column[0].set_xlabel(r"$\varepsilon$ (%)")
         column[1].set_xlabel(r"$\varepsilon=\,$load$\,/\,$onset$\,-\,1$")
         column[1].legend(loc="upper left", frameon=False, fontsize=SMALL)
-    law = Line2D([], [], color="0.3", linewidth=0.9, label="fitted law")
+    # In the colour of the only run; of several each has its own.
+    colour = style(0)["color"] if len(runs) == 1 else "0.3"
+    law = Line2D([], [], color=colour, linewidth=0.9, label="fitted law")
     legend_above(figure, [*axes[0, 0].get_legend_handles_labels()[0], law])
     return figure
 

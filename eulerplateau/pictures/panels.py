@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.pictures.coincidence import dash_once
 from eulerplateau.pictures.figure import frame
 from eulerplateau.pictures.looks import Look
 from eulerplateau.runs import Quantity, Series, without_noise
@@ -121,6 +122,8 @@ def draw_panels(
             _hold(line[0], what.ticks, margin)
         if what.limits is not None:
             line[0].set_ylim(*what.limits)
+    for ax in axes.flat:
+        dash_once(ax)
     return axes
 
 

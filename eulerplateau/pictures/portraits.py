@@ -9,15 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eulerplateau.pictures.figure import (
+    BLACK,
     SMALL,
     DrawShape,
     Portraits,
+    lay_out,
     scale_bar,
     wrapped,
     write_below,
 )
 from eulerplateau.pictures.kinds import KindPictures
 from eulerplateau.pictures.looks import style
+from eulerplateau.pictures.numbers import MARK, joined, spread
 from eulerplateau.pictures.panels import Band
 from eulerplateau.runs import Run
 
@@ -30,6 +33,11 @@ if TYPE_CHECKING:
 _PER_LINE, _MOST = 6, 12
 # A curve steeper than this, in shares of its panel, has its numbers beside it.
 _STEEP = 1.5
+# Numbers farther from their marks than this (points) have lines to them.
+_FAR = 18.0
+_LEADER: dict[str, Any] = {
+    "arrowstyle": "-", "color": "0.4", "linewidth": 0.6, "shrinkA": 1, "shrinkB": MARK
+}  # fmt: skip
 # Inches.
 _TITLE, _NOTE = 0.25, 0.28
 
@@ -142,33 +150,70 @@ def number_shapes(
 ) -> None:
     """Mark the shapes in the first panel, or in its enlargement where that shows them.
 
-    `panels` are its axes (1 or 2,), the second those of the enlarged `window` of loads.
+    `panels` are its axes (1 or 2,), the second those of the enlarged `window` of loads. The
+    rest of the figure is to be there: where numbers have room depends on the panels' size.
     """
+    marks: list[list[_Mark]] = [[] for _ in panels]
+    pairs = [(number, row) for number, rows in enumerate(shown) for row in rows]
+    for count, (number, row) in enumerate(pairs, 1):
+        inside = window is not None and window[0] <= row.load <= window[1]
+        ax = panels[1 if inside else 0]
+        place = row.load, kind.numbered(row)
+        colour = style(number)["color"]
+        ax.plot(*place, "o", color=colour, markersize=2 * MARK, fillstyle="none", zorder=5)
+        wish = _beside(ax, row, runs[number], number % 2 == 1, kind)
+        marks[1 if inside else 0].append(_Mark(count, place, colour, wish))
+    lay_out(panels[0].get_figure(root=True))
+    for ax, own in zip(panels, marks, strict=True):
+        if own:
+            _write_numbers(ax, own)
+
+
+@dataclass(frozen=True)
+class _Mark:
+    """A shape's number, its place in its panel, its colour, where its number is to be."""
+
+    number: int
+    place: tuple[float, float]
+    colour: str
+    wish: tuple[float, float]
+
+
+def _write_numbers(ax: Axes, marks: Sequence[_Mark]) -> None:
+    """Write numbers beside their marks, those of one place together, none on another."""
     from matplotlib.patheffects import withStroke
 
-    count = 0
-    for number, (run, rows) in enumerate(zip(runs, shown, strict=True)):
-        for row in rows:
-            count += 1
-            inside = window is not None and window[0] <= row.load <= window[1]
-            ax = panels[1 if inside else 0]
-            place = (row.load, kind.numbered(row))
-            colour = style(number)["color"]
-            ax.plot(*place, "o", color=colour, markersize=7, fillstyle="none", zorder=5)
-            x, y, align = _beside(ax, row, run, number % 2 == 1, kind)
-            ax.annotate(
-                str(count),
-                place,
-                xytext=(x, y),
-                textcoords="offset points",
-                ha=align,
-                va="top" if y < 0 else "bottom",
-                fontsize=8,
-                fontweight="bold",
-                color=colour,
-                zorder=6,
-                path_effects=[withStroke(linewidth=2.5, foreground="white")],
-            )
+    points = 72.0 / ax.get_figure(root=True).dpi
+    box = ax.get_window_extent()
+    places = points * (ax.transData.transform([mark.place for mark in marks]) - box.min)
+    groups = joined(places)
+    firsts = [marks[group[0]] for group in groups]
+    words = [", ".join(str(marks[one].number) for one in group) for group in groups]
+    places = places[[group[0] for group in groups]]
+    middles = spread(
+        places,
+        list(map(len, words)),
+        np.array([mark.wish for mark in firsts]),
+        points * box.size,
+    )
+    for mark, group, text, offset in zip(
+        firsts, groups, words, middles - places, strict=True
+    ):
+        alone = len({marks[one].colour for one in group}) == 1
+        ax.annotate(
+            text,
+            mark.place,
+            xytext=tuple(offset),
+            textcoords="offset points",
+            ha="center",
+            va="center_baseline",
+            fontsize=8,
+            fontweight="bold",
+            color=mark.colour if alone else BLACK,
+            zorder=6,
+            path_effects=[withStroke(linewidth=2.5, foreground="white")],
+            arrowprops=_LEADER if np.hypot(*offset) > _FAR else None,
+        )
 
 
 def _lines(shapes: Sequence[Drawn]) -> list[Sequence[Drawn]]:
@@ -182,13 +227,13 @@ def _lines(shapes: Sequence[Drawn]) -> list[Sequence[Drawn]]:
 
 def _beside(
     ax: Axes, row: Any, run: Run, below: bool, kind: KindPictures
-) -> tuple[float, float, str]:
-    """Return where a number is clear of the curve: offset in points, and alignment.
+) -> tuple[float, float]:
+    """Return the direction in which a number is clear of the curve.
 
     That of every other run is `below` its curve, for runs that coincide.
     """
     if kind.flat(row):
-        return 0, -6, "center"
+        return 0.0, -1.0
     place = run.rows.index(row)
     before, after = (
         run.rows[i] for i in (max(place - 1, 0), min(place + 1, len(run.rows) - 1))
@@ -196,6 +241,6 @@ def _beside(
     climb = (kind.numbered(after) - kind.numbered(before)) / np.ptp(ax.get_ylim())
     way = (after.load - before.load) / np.ptp(ax.get_xlim())
     if abs(climb) <= _STEEP * abs(way):
-        return 0, -6 if below else 5, "center"
+        return 0.0, -1.0 if below else 1.0
     right = (climb * way < 0) != below
-    return 5 if right else -5, -3 if below else 3, "left" if right else "right"
+    return 1.0 if right else -1.0, -0.5 if below else 0.5

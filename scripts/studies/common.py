@@ -53,10 +53,15 @@ def machine() -> str:
 
 
 def shrink(path: Path) -> None:
-    """Write a PNG anew with a palette: a third of the size, for the repository."""
+    """Write a PNG of curves anew with a palette: a third of the size, for the repository.
+
+    The palette covers all hues, also those of few pixels. Films that are shaded need more.
+    """
     from PIL import Image
 
     with Image.open(path) as image:
-        small = image.convert("RGB").quantize(64, dither=Image.Dither.NONE)
+        small = image.convert("RGB").quantize(
+            256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
+        )
         dots = image.info["dpi"]
     small.save(path, optimize=True, dpi=dots)

@@ -228,16 +228,32 @@ def test_the_view_is_the_runs_whatever_is_shown(drawn: Path, again: Path) -> Non
     assert (read(alone / "shape_0003.png") == read(drawn / "shape_0003.png")).all()
 
 
-def test_contact_sheet_shows_every_shape(drawn: Path) -> None:
-    sheet = read(drawn / "sheet.png")
-    one = read(drawn / "shape_0000.png")
-    wide = 600
-    height = round(wide * len(one) / one.shape[1])
-    cells = [
+def cells_of(sheet: Image) -> list[Image]:
+    """The fields of a contact sheet of all shapes, three in a row."""
+    wide, height = 600, len(sheet) // -(-N_SHAPES // 3)
+    return [
         sheet[y : y + height, x : x + wide]
         for y in range(0, len(sheet), height)
         for x in range(0, sheet.shape[1], wide)
     ]
+
+
+def test_a_caption_is_nearer_to_its_own_shape_than_to_the_next_below(drawn: Path) -> None:
+    cells = cells_of(read(drawn / "sheet.png"))
+    for cell in cells[:N_SHAPES]:
+        shape = np.flatnonzero(inked(cell).any(axis=1))
+        text = np.flatnonzero((below(cell) < 200).any(axis=(1, 2))) + len(above(cell))
+        own = text[0] - shape[-1]
+        assert all(
+            len(cell) - text[-1] + np.flatnonzero(inked(other).any(axis=1))[0] > 2 * own
+            for other in cells[:N_SHAPES]
+        )
+
+
+def test_contact_sheet_shows_every_shape(drawn: Path) -> None:
+    sheet = read(drawn / "sheet.png")
+    wide = 600
+    cells = cells_of(sheet)
     assert len(cells) >= N_SHAPES
     for cell in cells[:N_SHAPES]:
         assert_whole(cell)

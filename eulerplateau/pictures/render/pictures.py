@@ -108,7 +108,8 @@ class RunPictures:
                 images.append(self._picture(scene, place, shapes[place], views[place]))
                 self._write(f"shape_{self._step(place):04d}", "png", png(images[-1]))
         if len(images) > 1:
-            self._write("sheet", "png", contact_sheet(images))
+            high = views[0].size(_WIDTH)[1]
+            self._write("sheet", "png", contact_sheet(images, high))
 
     def turns(self, form: str = GIF) -> None:
         """Draw turn_*.gif, or .mp4: each shape once around, all in one scale."""

@@ -30,13 +30,14 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
+_BROWN = "#7A4A1E"
 # Marker and colour by solver; told apart in grey by the marker.
 MARKERS = {
     "newton": ("o", BLACK),
     "newton, coarse to fine": ("D", GREEN),
     "cg": ("s", BLUE),
     "conformal": ("*", PURPLE),
-    "tangent angle": ("P", PURPLE),
+    "tangent angle": ("P", _BROWN),
     "evolver": ("^", ORANGE),
     "evolver, coarse to fine": ("v", VERMILION),
     "evolver, gradients": ("X", SKY),
@@ -105,7 +106,7 @@ def _cut(ax: Axes, low: float, others: list[Point]) -> None:
     ax.text(
         0.97,
         0.04,
-        f"{others[0].first.solver}: to {least:.0e} in {first:.1g} s",
+        f"{others[0].first.solver}:\nto {least:.0e} in {first:.1g} s",
         ha="right",
         transform=ax.transAxes,
         fontsize=SMALL,

@@ -41,6 +41,8 @@ LOAD, SIGMA = "kL³/α", "σ̂"  # noqa: RUF001 - Greek letters
 # Loads shown in the two figures of shapes.
 TWISTING = (1, 600, 680, 716, 744, 1500, 2300, 3000)
 ENNEPER = (1, 864, 920, 1000, 1500, 2000, 2500, 3000)
+# Figures that show films, in all their colours.
+SHADED = ("twisting", "enneper")
 
 NOT_COMPUTED = (
     ("fig:frenet, fig:turning-tangents, fig:contact", "drawings that explain a notion"),
@@ -97,7 +99,8 @@ def main(names: tuple[str, ...], out: Path) -> None:
     for name in names or figures:
         path = out / "figures" / f"{name}.png"
         found[name] = figures[name].draw(path)
-        shrink(path)
+        if name not in SHADED:
+            shrink(path)
     text = page({name: figures[name].label for name in found}, found)
     click.echo(text, nl=False)
     if not names:

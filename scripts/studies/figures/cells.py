@@ -16,6 +16,7 @@ from eulerplateau.exact.cell import (
     fold_line,
     folds,
     inflection_stiffness,
+    inflections,
     interpolated_radius,
     parabola,
     parabola_kappa_adhesion,
@@ -218,10 +219,13 @@ def _star_perimeter(load: float) -> float:
 
 def _lines(ax: Axes) -> None:
     loads = np.geomspace(5, 1000, 36)
-    flat = [inflection_stiffness(3, float(load)) for load in loads]
+    # From the stiffest substrate shown, with close steps there, where the line is flat.
+    first = inflections(3, 1000)[0].sigma_hat
+    above = first * (1000 / first) ** np.linspace(0, 1, 100) ** 2
+    flat = [inflection_stiffness(3, float(load)) for load in above]
     straight = [np.nan if point is None else point.ks_hat for point in flat]
     ax.plot(
-        straight, loads, color=BLUE, linestyle=(0, (5, 2)), label="$\\sigma_1^*$: inflected"
+        straight, above, color=BLUE, linestyle=(0, (5, 2)), label="$\\sigma_1^*$: inflected"
     )
     lost = [symmetry_lost(3, float(load)) for load in loads]
     stiff = [np.nan if point is None else point.ks_hat for point in lost]

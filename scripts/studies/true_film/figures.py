@@ -46,8 +46,9 @@ _TO_EYE = np.array(
 )
 # A field's height over its width, and a bar in units of L.
 _HEIGHT, _BAR = 0.6, 0.1
-# How far along the way to the eye (in L) a loop is drawn in front of its film.
-_NEARER = 0.04
+# How far along the way to the eye (in L) a loop is drawn in front of its film: enough to
+# have its width where a film is seen aslant, too little for a hidden strand to show through.
+_NEARER = 0.012
 _DASHDOT = (0, (6, 1.5, 1, 1.5))
 _HELD: dict[str, dict[str, Any]] = {
     "twisted": {"color": VERMILION, "linewidth": 1.4},
@@ -132,7 +133,8 @@ def draw_waist(path: Path, rows: Any, onset: float, held: Any) -> None:
     """Draw the waist over the load, and energies over the waist at fixed loads."""
     figure = new_figure(PAGE, 3.3)
     left, right = figure.subplots(1, 2)
-    loads = np.linspace(48 * pi**3 + 1e-6, 2100, 60)
+    # The waist falls from the disk's as the root of the load: even steps in that.
+    loads = 48 * pi**3 + 1e-6 + (2100 - 48 * pi**3) * np.linspace(0, 1, 60) ** 2
     widths = np.array([2 * planar_film(2, s).positions(0.25)[1] for s in loads])
     _split(left, loads, widths, onset, BLUE, "two lobes", below=True)
     twisted = [r for r in rows if r.branch == "twisted"]

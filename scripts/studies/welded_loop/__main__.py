@@ -37,18 +37,9 @@ from scripts.studies.welded_loop.meshes import (
 )
 from scripts.studies.welded_loop.starts import cases, run, tabulated
 
-DISK_LOADS = (
-    50.0,
-    100.0,
-    300.0,
-    500.0,
-    700.0,
-    900.0,
-    1000.0,
-    1100.0,
-    1200.0,
-    1250.0,
-    1290.0,
+# Closer where the curve over them bends down.
+DISK_LOADS = tuple(
+    float(load) for load in (50, *range(100, 1000, 100), *range(1000, 1290, 20), 1290)
 )
 TURNS = (0.25, 0.5, 0.75)
 # Films that are computed on meshes too: load, C/B and link.

@@ -50,7 +50,7 @@ def _covered(points: FloatArray, before: Sequence[FloatArray]) -> BoolArray:
     covered = np.zeros(len(points), dtype=bool)
     x, y = points.T
     for curve in before:
-        there = np.interp(x, *curve.T, left=np.nan, right=np.nan)
+        there = np.interp(x, curve[:, 0], curve[:, 1], left=np.nan, right=np.nan)
         covered |= np.abs(y - there) < _COINCIDE
     return covered
 

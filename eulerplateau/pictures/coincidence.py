@@ -41,7 +41,7 @@ def dash_once(ax: Axes) -> None:
 def _in_panel(ax: Axes, line: Line2D) -> FloatArray:
     """Return a line's points (n, 2) as parts of its panel's width and height."""
     to_panel = ax.transScale + ax.transLimits
-    points: FloatArray = to_panel.transform(np.transpose(line.get_data()).astype(float))
+    points: FloatArray = to_panel.transform(np.asarray(line.get_data(), dtype=float).T)
     return points
 
 

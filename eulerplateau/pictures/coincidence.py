@@ -41,7 +41,7 @@ def dash_once(ax: Axes) -> None:
 def _in_panel(ax: Axes, line: Line2D) -> FloatArray:
     """Return a line's points (n, 2) as parts of its panel's width and height."""
     to_panel = ax.transScale + ax.transLimits
-    points: FloatArray = to_panel.transform(np.transpose(line.get_data()).astype(float))
+    points: FloatArray = to_panel.transform(np.asarray(line.get_data(), dtype=float).T)
     return points
 
 
@@ -50,7 +50,7 @@ def _covered(points: FloatArray, before: Sequence[FloatArray]) -> BoolArray:
     covered = np.zeros(len(points), dtype=bool)
     x, y = points.T
     for curve in before:
-        there = np.interp(x, *curve.T, left=np.nan, right=np.nan)
+        there = np.interp(x, curve[:, 0], curve[:, 1], left=np.nan, right=np.nan)
         covered |= np.abs(y - there) < _COINCIDE
     return covered
 

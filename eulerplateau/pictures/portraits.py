@@ -179,7 +179,7 @@ class _Mark:
     wish: tuple[float, float]
 
 
-def _write_numbers(ax: Axes, marks: Sequence[_Mark]) -> None:
+def _write_numbers(ax: Any, marks: Sequence[_Mark]) -> None:
     """Write numbers beside their marks, those of one place together, none on another."""
     from matplotlib.patheffects import withStroke
 
@@ -194,7 +194,7 @@ def _write_numbers(ax: Axes, marks: Sequence[_Mark]) -> None:
         places,
         list(map(len, words)),
         np.array([mark.wish for mark in firsts]),
-        points * box.size,
+        points * np.array([box.width, box.height]),
     )
     for mark, group, text, offset in zip(
         firsts, groups, words, middles - places, strict=True

@@ -47,8 +47,8 @@ _TO_EYE = np.array(
 # A field's height over its width, and a bar in units of L.
 _HEIGHT, _BAR = 0.6, 0.1
 # How far along the way to the eye (in L) a loop is drawn in front of its film: enough to
-# have its width where a film is seen aslant, too little for a hidden strand to show through.
-_NEARER = 0.012
+# have its width where a film is seen aslant, too little for hidden strands to be seen.
+_NEARER = 0.005
 _DASHDOT = (0, (6, 1.5, 1, 1.5))
 _HELD: dict[str, dict[str, Any]] = {
     "twisted": {"color": VERMILION, "linewidth": 1.4},

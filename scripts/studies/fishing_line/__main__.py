@@ -53,7 +53,7 @@ def main(
             click.echo(markdown_table(cycle.table(), 0))
         for folder in runs:
             click.echo(f"{folder.name}: where it touches at several places")
-            click.echo(markdown_table(racket_table(folder), 1))
+            click.echo(markdown_table(racket_table(folder), 0))
         for link in (0.5, 1.0):
             yields, opens = disk_yields(2 / 3, link), opening_load(0.01, 2 / 3, link)
             click.echo(f"Lk = {link:g}: the disk yields at {yields:.2f}, strands of a")

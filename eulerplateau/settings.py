@@ -123,6 +123,9 @@ def _spec_error(
         )
     elif first["type"] in ("missing", "union_tag_not_found"):
         problem = "is missing and has no default"
+        field = model.model_fields.get(key)
+        if field is not None and field.description:
+            problem = f"is missing: it {field.description}"
     else:
         # The branches of a union fail one by one at the same key: any would be right.
         alike = [error for error in errors if _key(error, data) == key]

@@ -99,7 +99,7 @@ class Leg(Series):
     @property
     def name(self) -> str:
         """What tells it from a leg the other way."""
-        varied = self.rows[0].load_name.word
+        varied = self.rows[0].load_name.word if self.rows else "load"
         return f"{varied} {'rising' if self.rising else 'falling'}"
 
     @property

@@ -117,20 +117,13 @@ class RunSpec(Settings):
     rod: RodSettings | None = None
     loop: LoopSettings = LoopSettings()
     start: StartSettings = StartSettings()
-    sweep: SweepSettings
+    sweep: SweepSettings = Field(
+        description="says what is varied, along branches too, as sweep.loads = [1, 1000]"
+    )
     solver: SolverSettings = SolverSettings()
     output: OutputSettings = OutputSettings()
     branches: BranchSettings = BranchSettings()
     catalogue: CatalogueSettings = CatalogueSettings()
-
-    @model_validator(mode="before")
-    @classmethod
-    def _something_is_swept(cls, given: Any) -> Any:
-        known = isinstance(given, dict) and given.keys() <= cls.model_fields.keys()
-        if known and "sweep" not in given:
-            problem = "is missing: it says what is varied, along branches too, as"
-            raise SpecError("sweep", f"{problem} sweep.loads = [1, 1000]")
-        return given
 
     @model_validator(mode="after")
     def _quantity_is_the_films(self) -> RunSpec:

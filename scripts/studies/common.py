@@ -9,12 +9,15 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from threadpoolctl import threadpool_limits
 
 from eulerplateau.mesh import Disk, MeshSpec, generate
 from eulerplateau.settings import validate
+
+if TYPE_CHECKING:
+    from PIL.Image import Quantize
 
 ROOT = Path(__file__).parents[2]
 
@@ -55,13 +58,26 @@ def machine() -> str:
 def shrink(path: Path) -> None:
     """Write a PNG of curves anew with a palette: a third of the size, for the repository.
 
-    The palette covers all hues, also those of few pixels. Films that are shaded need more.
+    The palette covers all hues, also those of few pixels.
     """
+    from PIL.Image import Quantize
+
+    _with_palette(path, 256, Quantize.MAXCOVERAGE)
+
+
+def shrink_shaded(path: Path) -> None:
+    """Write a PNG of films anew, with a palette of the shades that most of it has."""
+    from PIL.Image import Quantize
+
+    _with_palette(path, 128, Quantize.MEDIANCUT)
+
+
+def _with_palette(path: Path, colours: int, method: Quantize) -> None:
     from PIL import Image
 
     with Image.open(path) as image:
-        small = image.convert("RGB").quantize(
-            256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
-        )
         dots = image.info["dpi"]
+        small = image.convert("RGB").quantize(
+            colours, method=method, dither=Image.Dither.NONE
+        )
     small.save(path, optimize=True, dpi=dots)

@@ -17,7 +17,7 @@ from eulerplateau.pictures.comparison import runs_figure
 from eulerplateau.pictures.figure import save
 from eulerplateau.pictures.planar import plot_energy, plot_gallery
 from eulerplateau.runs import Row, Run, load_run, read_run, run_sweep
-from scripts.studies.common import ROOT, markdown_table, shrink
+from scripts.studies.common import ROOT, markdown_table, shrink, shrink_shaded
 from scripts.studies.figures.cells import (
     draw_geometry,
     draw_phases,
@@ -41,7 +41,7 @@ LOAD, SIGMA = "kL³/α", "σ̂"  # noqa: RUF001 - Greek letters
 # Loads shown in the two figures of shapes.
 TWISTING = (1, 600, 680, 716, 744, 1500, 2300, 3000)
 ENNEPER = (1, 864, 920, 1000, 1500, 2000, 2500, 3000)
-# Figures that show films, in all their colours.
+# Figures that show films.
 SHADED = ("twisting", "enneper")
 
 NOT_COMPUTED = (
@@ -99,8 +99,7 @@ def main(names: tuple[str, ...], out: Path) -> None:
     for name in names or figures:
         path = out / "figures" / f"{name}.png"
         found[name] = figures[name].draw(path)
-        if name not in SHADED:
-            shrink(path)
+        (shrink_shaded if name in SHADED else shrink)(path)
     text = page({name: figures[name].label for name in found}, found)
     click.echo(text, nl=False)
     if not names:

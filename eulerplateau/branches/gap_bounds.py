@@ -18,8 +18,8 @@ from eulerplateau.loop import (
     HeldGaps,
     Lengths,
     Strands,
+    contact_spreads,
     passed,
-    spread,
 )
 
 # Gaps are looked at up to this part of the diameter.
@@ -195,12 +195,8 @@ class GapBounds:
 
     def _kinds(self, x: FloatArray, tensions: FloatArray, held: Touch) -> FloatArray:
         """Return by how much each of the contacts (k,) is the point, or the line, it is."""
-        forces = -tensions[len(x) :]
-        contact = self.strands.contacts(held.gaps)
-        kinds = np.zeros(len(held.gaps))
-        for number in range(int(contact.max(initial=-1)) + 1):
-            own = contact == number
-            kinds[own] = spread(self.strands, x, held.gaps[own], forces[own])
+        gaps, forces = held.gaps, -tensions[len(x) :]
+        kinds = contact_spreads(self.strands, x, gaps, forces, self.strands.contacts(gaps))
         return np.where(held.line, -kinds, kinds)
 
     def _slopes(self, x: FloatArray, held: Gaps) -> FloatArray:

@@ -23,14 +23,13 @@ class Load:
     column : str, its column in every table, and what sweep.quantity calls it
     constant : str, what sweep.quantity calls the film's constant: load = constant L^3/alpha
     tension_per_load : float, effective sigma_hat per unit of load
-    text, symbol, tex : its name in ASCII, in Unicode and in TeX
+    text, tex : its name in ASCII and in TeX
     """
 
     column: str
     constant: str
     tension_per_load: float
     text: str
-    symbol: str
     tex: str
 
     def tension(self, load: float) -> float:
@@ -62,8 +61,8 @@ class Load:
 
 
 _TEX = r"kL^3/\alpha", r"\hat\sigma"
-SPRING_LOAD = Load("kL3_alpha", "k", SPRING_TENSION, "kL3/alpha", "kL³/α", _TEX[0])  # noqa: RUF001
-TENSION = Load("sigma_hat", "sigma", 1.0, "sigma_hat", "σ̂", _TEX[1])  # noqa: RUF001
+SPRING_LOAD = Load("kL3_alpha", "k", SPRING_TENSION, "kL3/alpha", _TEX[0])
+TENSION = Load("sigma_hat", "sigma", 1.0, "sigma_hat", _TEX[1])
 
 # By the films' names, as in film.model.
 FILM_LOADS = {"springs": SPRING_LOAD, "dirichlet": TENSION, "area": TENSION}

@@ -32,7 +32,7 @@ from .motions import (
     sliding as sliding,
 )
 from .rod import Rod as Rod
-from .spreads import spread as spread
+from .spreads import contact_spreads as contact_spreads
 from .strands import Strands as Strands, strands_of as strands_of
 from .stretches import ALONG as ALONG, evenly as evenly
 from .term import LEAST as LEAST, MOST as MOST, OwnTerm as OwnTerm, Term as Term

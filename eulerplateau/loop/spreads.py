@@ -17,13 +17,28 @@ from dataclasses import replace
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.loop.gaps import Gaps
 from eulerplateau.loop.loop import backward_differences
 from eulerplateau.loop.strands import Strands
 
 
-def spread(strands: Strands, x: FloatArray, gaps: Gaps, forces: FloatArray) -> float:
+def contact_spreads(
+    strands: Strands, x: FloatArray, gaps: Gaps, forces: FloatArray, contact: IntArray
+) -> FloatArray:
+    """Return d2D/ds2 (k,), in 1/L, in the middle of each place's contact, were it a point.
+
+    forces : (k,) with which strands push each other at the places
+    contact : (k,) int, the number of the contact of which each is a place
+    """
+    found = np.zeros(len(gaps))
+    for number in np.unique(contact):
+        own = contact == number
+        found[own] = _spread(strands, x, gaps[own], forces[own])
+    return found
+
+
+def _spread(strands: Strands, x: FloatArray, gaps: Gaps, forces: FloatArray) -> float:
     """Return d2D/ds2, in 1/L, in the middle of a contact of a loop (n, d), were it a point.
 
     gaps : the places of one contact, k of them

@@ -19,7 +19,6 @@ class CellParameter:
 
     column: str
     text: str
-    symbol: str
     tex: str
     energy: str
     meaning: str
@@ -48,7 +47,6 @@ CELL_PARAMETERS = {
     "sigma_hat": CellParameter(
         "sigma_hat",
         "sigma_hat",
-        "σ̂",  # noqa: RUF001
         r"\hat\sigma",
         "film_energy",
         r"contractility $\hat\sigma=\sigma R_0^3/\alpha$",
@@ -56,7 +54,6 @@ CELL_PARAMETERS = {
     "ks_hat": CellParameter(
         "ks_hat",
         "ks_hat",
-        "k̂ₛ",
         r"\hat k_s",
         "adhesion_energy",
         r"stiffness of the adhesions $\hat k_s=k_s R_0^3/\alpha$",

@@ -42,7 +42,6 @@ class LoopParameter:
     """
 
     column: str
-    symbol: str
     tex: str
     meaning: str
     energy_rate: Callable[[Any], float]
@@ -82,7 +81,6 @@ def _energy_by_curvature(row: Any) -> float:
 LOOP_PARAMETERS = {
     "link": LoopParameter(
         "link",
-        "Lk",
         r"\mathit{Lk}",
         "link",
         lambda row: 2 * math.pi * row.twist_moment,
@@ -90,20 +88,17 @@ LOOP_PARAMETERS = {
     "twist_ratio": LoopParameter(
         "twist_ratio",
         "C/B",
-        "C/B",
         "rigidity to twist over that to bending",
         lambda row: row.twist_energy / row.twist_ratio,
     ),
     "rest_curvature": LoopParameter(
         "rest_curvature",
         "q",
-        "q",
         "natural curvature over 2 pi / L",
         _energy_by_curvature,
     ),
     "diameter": LoopParameter(
         "diameter",
-        "d",
         "d/L",
         "diameter",
         # Of one that nothing is known of, as no film was found: a row that failed.
@@ -119,8 +114,8 @@ class BenchParameter:
     Attributes
     ----------
     column : str, which holds it in the SI, and says so
-    letter, meaning : str
-    tex_letter : str, the letter in TeX
+    meaning : str
+    letter : str, in TeX
     power : int, of which the load is proportional to it
     measure : Measure
     unit : str, in which it is shown: as it was written
@@ -128,7 +123,6 @@ class BenchParameter:
 
     column: str
     letter: str
-    tex_letter: str
     meaning: str
     power: int
     measure: Measure
@@ -162,17 +156,11 @@ class BenchParameter:
         return f"{self.meaning} ({self.unit})"
 
     @property
-    def symbol(self) -> str:
-        """The name in Unicode: over its unit, a number."""
-        unit = f"({self.unit})" if "/" in self.unit else self.unit
-        return f"{self.letter}/{unit}"
-
-    @property
     def tex(self) -> str:
         """The name in TeX: over its unit, a number."""
         unit = self.unit.replace("*", r"\,")
         unit = rf"(\mathrm{{{unit}}})" if "/" in unit else rf"\mathrm{{{unit}}}"
-        return f"{self.tex_letter}/{unit}"
+        return f"{self.letter}/{unit}"
 
     @property
     def label(self) -> str:
@@ -182,10 +170,9 @@ class BenchParameter:
 
 _IN = " in "
 BENCH = {
-    "length": BenchParameter("length_m", "L", "L", "length", 3, LENGTH, LENGTH.unit),
+    "length": BenchParameter("length_m", "L", "length", 3, LENGTH, LENGTH.unit),
     "surface_tension": BenchParameter(
         "surface_tension_N_per_m",
-        "γ",  # noqa: RUF001
         r"\gamma",
         "surface tension",
         1,

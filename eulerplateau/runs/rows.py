@@ -22,10 +22,6 @@ class LoadName(Protocol):
         """Its name in ASCII."""
 
     @property
-    def symbol(self) -> str:
-        """Its name in Unicode."""
-
-    @property
     def tex(self) -> str:
         """Its name in TeX."""
 

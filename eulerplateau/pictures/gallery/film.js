@@ -148,8 +148,8 @@ class Film {
   fit() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!width || !height) return;
+    this.setPixels();
     this.renderer.setSize(width, height, false);
-    this.renderer.setPixelRatio(this.detail * Math.min(window.devicePixelRatio, 2));
     const half = 1.05 * Math.max(
       (this.halfSize[0] + this.largestRadius) / width,
       (this.halfSize[1] + this.largestRadius) / height);
@@ -164,7 +164,11 @@ class Film {
   setDetail(detail) {
     if (detail === this.detail) return;
     this.detail = detail;
-    this.renderer.setPixelRatio(detail * Math.min(window.devicePixelRatio, 2));
+    this.setPixels();
+  }
+
+  setPixels() {
+    this.renderer.setPixelRatio(this.detail * Math.min(window.devicePixelRatio, 2));
   }
 
   draw() {

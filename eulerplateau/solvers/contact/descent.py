@@ -9,7 +9,7 @@ forces balance, all strands that touch push, and no other gap is negative.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -90,13 +90,11 @@ class ContactDescent:
         radius = state.radius
         steps = _Steps(self.energy, self.strands, state)
         while radius > SMALLEST_RADIUS:
-            size = radius
-            for step, gaps in steps.within(radius):
-                size = min(step.size, size)
-                reached = self._reached(state, step, gaps, radius)
-                if reached is not None:
-                    return reached
-            radius = 0.25 * size
+            step, gaps = steps.within(radius)
+            reached = self._reached(state, step, gaps, radius)
+            if reached is not None:
+                return reached
+            radius = 0.25 * min(step.size, radius)
         return None
 
     def _reached(
@@ -122,11 +120,11 @@ class _Steps:
     strands: Strands
     state: Touching
 
-    def within(self, radius: float) -> Iterator[tuple[NewtonStep, Gaps]]:
-        """Yield steps of at most such a radius, with the gaps that they close.
+    def within(self, radius: float) -> tuple[NewtonStep, Gaps]:
+        """Return the step of at most such a radius, with the gaps that it closes.
 
-        First the one that keeps those of the state; if it lets strands overlap to first
-        order, that of the program before.
+        It keeps those of the state; if strands overlap then to first order, it is that of
+        the program.
         """
         model, gaps = self.state.model, self.state.gaps
         step = model.newton_step(radius)
@@ -136,9 +134,8 @@ class _Steps:
             found = self._program.step(radius)
             if found is not None:
                 coefficients, closed = found
-                yield self._loose.step(coefficients), self._near[closed]
-                return
-        yield step, gaps
+                return self._loose.step(coefficients), self._near[closed]
+        return step, gaps
 
     def _overlap(self, moved: FloatArray) -> bool:
         widths = self._widths + self._rows @ moved.ravel()

@@ -21,9 +21,9 @@ from eulerplateau.loop import (
     HeldGaps,
     LoopEnergy,
     Strands,
+    contact_spreads,
     evenly,
     passed,
-    spread,
     with_gaps_held,
 )
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
@@ -229,12 +229,10 @@ class Keeping:
     def _at_points(self, state: Touching) -> BoolArray:
         """Return which gaps (k,) are places of contacts that are points."""
         gaps, contact = state.gaps, self.strands.contacts(state.gaps)
-        slides = gaps.slides.copy()
-        for own in (contact == number for number in range(int(contact.max()) + 1)):
-            least = _LINE if gaps.slides[own].all() else _POINT
-            spreads = spread(self.strands, state.model.x, gaps[own], state.forces[own])
-            slides[own] = spreads >= least
-        return slides
+        along = np.isin(contact, contact[~gaps.slides])
+        found = contact_spreads(self.strands, state.model.x, gaps, state.forces, contact)
+        at_points: BoolArray = found >= np.where(along, _POINT, _LINE)
+        return at_points
 
     def _parted(self, state: Touching) -> Touching | None:
         """Return the state with points where strands overlap between two vertices' gaps.

@@ -22,8 +22,8 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import BoolArray, FloatArray
 
-# By which part of the largest entry of H, over that of J^T J, closed gaps are stiffened
-# where H is not definite without them: from, to, and factor.
+# By which parts of the largest entry of H, over that of J^T J, closed gaps are stiffened,
+# one after another, where H is not definite without that.
 _STIFFENED = (1e-6, 1e-4, 1e-2)
 # A step is not made to fit its radius better than this.
 _FITS = 0.5

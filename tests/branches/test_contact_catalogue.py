@@ -54,6 +54,7 @@ def check_laws(problem: Problem, found: Equilibrium) -> None:
     assert np.abs(contacts.gaps).max(initial=0.0) < 1e-10
 
 
+@pytest.mark.slow
 def test_planar_films_in_contact_are_found_and_converge_to_the_exact_ones() -> None:
     """From a random loop, to second order: elliptic functions know energy and force."""
     exact, off = planar_film(2, POINT, THICK), []
@@ -70,6 +71,7 @@ def test_planar_films_in_contact_are_found_and_converge_to_the_exact_ones() -> N
     np.testing.assert_allclose(orders, 2.0, atol=0.2)
 
 
+@pytest.mark.slow
 def test_all_that_is_found_keeps_to_the_laws_and_is_what_solvers_find_from_there() -> None:
     problem = thick(6, "dirichlet", 0.06)
     load = 3600.0
@@ -87,6 +89,7 @@ def test_all_that_is_found_keeps_to_the_laws_and_is_what_solvers_find_from_there
     assert max(one.n_unstable or 0 for one in some) > 0
 
 
+@pytest.mark.slow
 def test_planar_films_in_contact_are_saddles_whose_force_is_their_energys_rise() -> None:
     flat = thick(8, in_plane=True)
     (entry,) = catalogue_at(flat, POINT, Plan(starts=1, index=0))

@@ -116,6 +116,7 @@ def imbalance(point):
     return float(np.linalg.norm(off + beta * bent, axis=1).max() / film.load)
 
 
+@pytest.mark.slow
 def test_saddle_of_a_curved_rod_is_stable_and_balanced():
     """q = 1.6, C/B = 0.75, sigma = 24 pi^3: off its plane, without a mesh."""
     point = saddle()

@@ -85,6 +85,7 @@ def test_the_disk_is_lost_where_the_theory_says_all_along_a_curve() -> None:
     assert turn.values[0] == pytest.approx(0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_the_disk_s_threshold_over_the_natural_curvature_of_its_rod() -> None:
     """sigma_2(q) = 96 pi^3 [1 - q (q + g) / (q + 4 g)], to 1e-10."""
     g, q = 0.75, 0.5

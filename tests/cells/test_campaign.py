@@ -25,6 +25,6 @@ def test_every_random_cell_ends_as_a_minimum_or_says_why_not() -> None:
 
 
 def test_a_random_cell_is_the_same_each_time() -> None:
-    first, second = (outcome(SEED, 3) for _ in range(2))
+    first, second = (outcome(SEED, 1) for _ in range(2))
     assert first.status == second.status
     assert first.residual == second.residual

@@ -38,7 +38,7 @@ def fold_of(m: int, parameter: str, window: tuple[float, float], fixed: float) -
     ("parameter", "window", "fixed", "exact"),
     [
         ("load", (50.0, 60.0), 123.101, 54.536),
-        ("load", (62.0, 75.0), 99.685, 68.283),
+        pytest.param("load", (62.0, 75.0), 99.685, 68.283, marks=pytest.mark.slow),
         ("stiffness", (110.0, 130.0), 54.536, 123.101),
     ],
 )

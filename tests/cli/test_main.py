@@ -267,7 +267,9 @@ def test_mesh_command_ends_with_the_code_of_what_went_wrong(tmp_path: Path) -> N
     assert_fails(run_here("mesh", good, "-o", tmp_path / "file" / "a.vtp"), 5, "file")
 
 
-@pytest.mark.parametrize("stream", [0, 1, 2])
+@pytest.mark.parametrize(
+    "stream", [1, *(pytest.param(other, marks=pytest.mark.slow) for other in (0, 2))]
+)
 def test_closed_stream_is_no_error_and_no_file_of_the_run(spec: Path, stream: int) -> None:
     words = command_line("sweep", "--no-pictures", spec, "--out", "out")
     line = f"exec {shlex.join(words)} {stream}>&-"

@@ -135,7 +135,10 @@ def valid(folder: Path, said: str) -> None:
     assert said == f"eulerplateau: interrupted: {folder}: {there}\n"
 
 
-@pytest.mark.parametrize("name", CODES)
+@pytest.mark.parametrize(
+    "name",
+    ["INT", *(pytest.param(other, marks=pytest.mark.slow) for other in ("TERM", "HUP"))],
+)
 def test_sweep_ends_with_the_code_of_its_signal_and_names_its_folder(
     spec: Path, name: str
 ) -> None:

@@ -151,6 +151,7 @@ def test_a_racket_s_head_has_its_size() -> None:
             assert fit.sigma_hat is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("deviation", [0.0, 1e-3, 5e-3])
 def test_what_is_left_of_another_curve_is_no_noise(deviation: float) -> None:
     random, t = np.random.default_rng(5), np.linspace(0, 2 * np.pi, 80, endpoint=False)

@@ -234,6 +234,7 @@ def test_figures_of_small_runs_can_be_read(sweep: Path, name: str) -> None:
     assert figure.get_figheight() <= PAGE_HEIGHT
 
 
+@pytest.mark.slow
 def test_twenty_runs_fit_on_a_page_and_their_diagram_is_no_strip(many: list[Run]) -> None:
     figure = runs_figure(many, "diagram")
     figure.draw_without_rendering()

@@ -96,6 +96,7 @@ def test_python_examples_run_in_order_and_print_what_they_say(
             assert words_and_numbers(printed) == (words, pytest.approx(numbers, 1e-4, 1e-4))
 
 
+@pytest.mark.slow
 def test_commands_of_the_tutorial_on_cells_do_what_it_says(clone: Path) -> None:
     page = DOCS / "cells-tutorial.md"
     for block in blocks(page, "csv") + blocks(page, "toml"):
@@ -117,6 +118,7 @@ def test_commands_of_the_tutorial_on_cells_do_what_it_says(clone: Path) -> None:
         assert (clone / written).stat().st_size > 0, written
 
 
+@pytest.mark.slow
 def test_commands_of_the_page_at_the_bench_print_what_it_says(
     clone: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

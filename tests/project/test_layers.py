@@ -191,9 +191,7 @@ def test_imports_never_run_in_a_circle() -> None:
 def test_heavy_libraries_are_imported_where_they_are_used() -> None:
     for module, path in FILES.items():
         names = {
-            name
-            for node in loaded_at_import(tree(path))
-            for name in imports(node, module)
+            name for node in loaded_at_import(tree(path)) for name in imports(node, module)
         }
         assert {name.split(".")[0] for name in names} & HEAVY == set(), module
 

@@ -89,6 +89,7 @@ def test_it_is_drawn(result: Catalogue) -> None:
     assert (result.folder / "catalogue.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_a_film_kept_in_its_plane_has_a_catalogue_of_films_in_it(tmp_path: Path) -> None:
     listed = run_catalogue(
         specification(tmp_path, model="area", plane=True), tmp_path / "o"

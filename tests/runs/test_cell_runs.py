@@ -135,6 +135,7 @@ def test_exact_loss_of_symmetry_is_where_the_test_above_says():
     assert at.ks_hat == pytest.approx(100.0, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_phase_diagram_has_lines_points_and_a_shape_in_each_region(tmp_path):
     window = {"sigma_hat": [30.0, 200.0], "ks_hat": [40.0, 200.0], "columns": 8}
     diagram = run_phase_diagram(

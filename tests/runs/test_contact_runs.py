@@ -156,6 +156,7 @@ def test_a_sweep_with_contact_goes_on_to_the_bit(
         run_sweep(spec(mesh, loop={"diameter": 0.05}), swept)
 
 
+@pytest.mark.slow
 def test_an_ensemble_over_the_diameter_joins_in_one_table(
     mesh: Path, tmp_path: Path
 ) -> None:
@@ -215,6 +216,7 @@ def test_loci_are_refused_before_a_mesh_is_read(tmp_path: Path) -> None:
         run_locus(thick, asked, tmp_path / "l")
 
 
+@pytest.mark.slow
 def test_a_catalogue_has_the_columns_and_the_shapes_their_contacts(
     mesh: Path, swept: Path, tmp_path: Path
 ) -> None:

@@ -93,6 +93,7 @@ def test_a_run_starts_from_a_refined_shape(mesh: Path, swept: Path, tmp_path: Pa
             assert again.film_vertices == read_disk(mesh).n_v
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_from_a_refined_shape(
     mesh: Path, swept: Path, tmp_path: Path
 ) -> None:

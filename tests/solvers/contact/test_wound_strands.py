@@ -24,6 +24,7 @@ def wound() -> tuple[Equilibrium, ...]:
     return tuple(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", range(1, len(LOADS)))
 def test_strands_come_to_wind_round_each_other_in_tens_of_steps(row: int) -> None:
     found = wound()[row]
@@ -40,6 +41,7 @@ def test_strands_come_to_wind_round_each_other_in_tens_of_steps(row: int) -> Non
     assert contacts.smallest_gap > -2e-3 * DIAMETER
 
 
+@pytest.mark.slow
 def test_wound_strands_push_with_the_energy_s_slope_in_the_diameter() -> None:
     found = wound()[-1]
     assert found.contacts is not None

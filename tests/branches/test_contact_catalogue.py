@@ -143,7 +143,7 @@ def determinant(x: FloatArray) -> float:
     return float(abs(np.linalg.det(rows[1:, 1:])))
 
 
-@pytest.mark.parametrize("index", [0, 2])
+@pytest.mark.parametrize("index", [0, pytest.param(2, marks=pytest.mark.slow)])
 def test_a_knot_stays_one_all_along_a_search(index: int) -> None:
     """No strand passes through another: the trefoil's determinant is 3, a circle's 1."""
     problem = thick(6, "dirichlet", 0.03)

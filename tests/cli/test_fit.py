@@ -74,6 +74,7 @@ def test_a_circle_is_said_to_be_one(tmp_path: Path) -> None:
     assert found["surface_tension"]["high"] == pytest.approx(bound, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_racket_s_head(tmp_path: Path) -> None:
     size = (EI / 0.05) ** (1 / 3) * 1e3
     points = Racket().curve(np.empty(0)).points(np.linspace(-5, 5, 60)).x

@@ -117,6 +117,7 @@ def test_an_outer_edge_is_half_a_diameter_from_the_centre() -> None:
     assert fit.size.value == pytest.approx(180, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_a_circle_yields_an_upper_bound() -> None:
     buckling = thresholds(2).sigma_buckling
     circle = outline(2, 800.0, 80)

@@ -171,6 +171,7 @@ def test_a_sweep_in_length_goes_on_to_the_bit(
     assert [row.energy for row in on.rows] == [row.energy for row in read_run(swept).rows]
 
 
+@pytest.mark.slow
 def test_branches_in_surface_tension_find_the_bifurcation_of_the_load(
     mesh: Path, tmp_path: Path
 ) -> None:

@@ -103,6 +103,7 @@ def test_stiffness_may_be_swept_instead(tmp_path):
     assert read_run(tmp_path / "run").load.column == "ks_hat"
 
 
+@pytest.mark.slow
 def test_branches_find_the_loss_of_symmetry_and_the_fold(tmp_path):
     """Both within the discretisation's error of the exact ones, which is second order."""
     exact = folds(3, 100.0)[0].sigma_hat

@@ -66,6 +66,7 @@ def test_a_sweep_with_twist_goes_on_to_the_bit(mesh: Path, tmp_path: Path) -> No
     assert on.rows[-1].writhe == whole.rows[-1].writhe
 
 
+@pytest.mark.slow
 def test_branches_of_a_turned_loop_say_nothing_of_mirrors(
     mesh: Path, tmp_path: Path
 ) -> None:

@@ -59,6 +59,15 @@ def of_one_strand(
     return held
 
 
+def from_one_strand(knots: FloatArray, gaps: Gaps, beside: Gaps) -> Gaps:
+    """Return gaps as seen from the strand on which others `beside` are held."""
+    if not len(beside) or not len(gaps):
+        return gaps
+    held = of_one_strand(knots, gaps.s, gaps.t, beside)
+    s, t = np.where(held, gaps.s, gaps.t), np.where(held, gaps.t, gaps.s)
+    return Gaps(s, t, gaps.slides)
+
+
 def evenly(knots: FloatArray, gaps: Gaps, forces: FloatArray) -> Gaps | None:
     """Return gaps where strands lie along each other, an edge from each other.
 

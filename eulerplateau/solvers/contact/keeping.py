@@ -40,7 +40,7 @@ _PULLS = 1e-9
 # By which part of the diameter strands may overlap between vertices at which they are held
 # along each other; and how often that is mended, or strands that part are held at points.
 _BETWEEN = 1e-3
-_CHANGES = 3
+CHANGES = 3
 # Strands touch at a point where they spread so fast from there, d2D/ds2 in 1 / L, and do so
 # until they spread less than that; and than that in their least distance, on the way.
 _POINT, _LINE, _FLAT = 2.0, 1.0, 0.2
@@ -206,7 +206,7 @@ class Keeping:
 
         None if they are so, or have been mended too often.
         """
-        if state.changes >= _CHANGES or not len(state.gaps):
+        if state.changes >= CHANGES or not len(state.gaps):
             return None
         return self._told(state) or self._parted(state) or self._laid_evenly(state)
 

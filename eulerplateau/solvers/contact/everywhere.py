@@ -30,6 +30,8 @@ from eulerplateau.solvers.trust_region import FIRST_RADIUS
 # is nearer than this, in edges.
 _OVERLAP = 1e-6
 _BESIDE = 0.02
+# Places no farther from each other than that, in edges, and from no others, are a point.
+_POINT = 0.3
 _STEPS = 40
 
 
@@ -46,6 +48,9 @@ class Everywhere:
         None if none is found.
         """
         found: Touching | None = replace(state, changes=CHANGES)
+        known = self._overlaps(state)
+        if len(known):
+            found = self._from_one_strand(replace(state, changes=CHANGES))
         for _ in range(_STEPS):
             heed()
             if found is None:
@@ -53,7 +58,8 @@ class Everywhere:
             overlaps = self._overlaps(found)
             if not len(overlaps) and at_rounding(found.model) and self._pushes(found):
                 return found if stability(found.model).n_unstable == 0 else None
-            found = self._after_step(found, overlaps)
+            known = known.joined(overlaps[self.strands.unlike(overlaps, known, _BESIDE)])
+            found = self._after_step(found, known, closes=len(overlaps) > 0)
         return None
 
     def again(self, state: Touching, x: FloatArray) -> Touching | None:
@@ -64,37 +70,69 @@ class Everywhere:
             return None
         return None if found is None else self.settled(found)
 
+    def _from_one_strand(self, state: Touching) -> Touching | None:
+        """Return the state with stretches held from one strand each."""
+        gaps = from_one_strand(self.strands.knots, state.gaps)
+        if np.array_equal(gaps.s, state.gaps.s):
+            return state
+        return self._at(state, state.model.x, gaps)
+
     def _pushes(self, state: Touching) -> bool:
         return bool((state.forces >= -state.uncertain).all())
 
     def _overlaps(self, state: Touching) -> Gaps:
         """Return the places where strands overlap most, that are not held."""
-        most = -_OVERLAP * self.strands.diameter
-        low = self.strands.nearest(state.model.x, most)
+        low = self.strands.nearest(state.model.x, -_OVERLAP * self.strands.diameter)
         low = low[self.strands.unlike(low, state.gaps, _BESIDE)]
         return from_one_strand(self.strands.knots, low, state.gaps[~state.gaps.slides])
 
-    def _after_step(self, state: Touching, overlaps: Gaps) -> Touching | None:
-        """Return the state after a step that closes gaps and lets go of others."""
-        x, strands = state.model.x, self.strands
+    def _after_step(self, state: Touching, known: Gaps, *, closes: bool) -> Touching | None:
+        """Return the state after a step, which closes gaps and lets go of others if need be.
+
+        known : places where strands have overlapped on the way, and may again
+        """
+        x, gaps = state.model.x, state.gaps
         try:
-            gaps = strands.at(x, state.gaps)[0].joined(overlaps)
-            held = with_gaps_held(self.energy, strands, state.gaps)
-            loose = loosened(self.energy, held, state.model)
-            rows = strands.between(x, gaps).jacobian()
-            found = Program(
-                loose.gradient,
-                loose.hessian,
-                strands.at(x, gaps)[1],
-                loose.coordinates.slope(rows.T).T,
-                np.arange(len(gaps)) < len(state.gaps),
-            ).step(FIRST_RADIUS)
-            if found is None:
-                return None
-            coefficients, closed = found
-            return self._at(state, x + loose.displacement(coefficients), gaps[closed])
+            newton = state.model.newton_step(FIRST_RADIUS)
+            if newton is not None and not closes and self._pushes(state):
+                return self._at(state, x + newton.moved, gaps)
+            others = known[self.strands.unlike(known, gaps, _BESIDE)]
+            found = self._closing(state, gaps.joined(others))
+            return None if found is None else self._at(state, *found)
         except LinAlgError:
             return None
+
+    def _closing(self, state: Touching, gaps: Gaps) -> tuple[FloatArray, Gaps] | None:
+        """Return the loop (n, d) that a step of the program leads to, and what it closes.
+
+        gaps : those of the state, and others behind them
+        """
+        x, strands = state.model.x, self.strands
+        held = with_gaps_held(self.energy, strands, state.gaps)
+        loose = loosened(self.energy, held, state.model)
+        gaps, widths = strands.at(x, gaps)
+        rows = loose.coordinates.slope(strands.between(x, gaps).jacobian().T).T
+        closed = np.arange(len(gaps)) < len(state.gaps)
+        program = Program(loose.gradient, loose.hessian, widths, rows, closed)
+        found = program.step(FIRST_RADIUS)
+        if found is None:
+            return None
+        coefficients, closes = found
+        return x + loose.displacement(coefficients), self._points(x, gaps[closes])
+
+    def _points(self, x: FloatArray, gaps: Gaps) -> Gaps:
+        """Return gaps with one that slides for places that close in on a point."""
+        contact, chosen = self.strands.contacts(gaps), np.ones(len(gaps), dtype=bool)
+        for number in np.unique(contact[~gaps.slides]):
+            own = contact == number
+            first = np.flatnonzero(own)[0]
+            only = np.arange(len(gaps)) == first
+            point = replace(gaps[only], slides=only[only])
+            short = not self.strands.unlike(gaps[own], gaps[only], _POINT).any()
+            if short and not self.strands.laid_along(x, point)[0]:
+                chosen &= ~own | only
+                gaps = replace(gaps, slides=gaps.slides | only)
+        return gaps[chosen]
 
     def _at(self, state: Touching, near: FloatArray, gaps: Gaps) -> Touching | None:
         """Return the state on the loop next to that, with gaps closed."""

@@ -139,7 +139,8 @@ def _balanced(
         if not pulls.any():
             return wanted, active
         parts = np.full_like(forces, np.inf)
-        parts[pulls] = forces[pulls] / (forces[pulls] - wanted[pulls])
+        span = np.maximum(forces[pulls] - wanted[pulls], np.finfo(np.float64).tiny)
+        parts[pulls] = forces[pulls] / span
         forces = forces + float(parts.min()) * (wanted - forces)
         active = active & (parts > parts.min())
         forces[~active] = 0.0

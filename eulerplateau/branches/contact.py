@@ -99,14 +99,16 @@ def contact_near(
 ) -> tuple[Contact, FloatArray]:
     """Return what is closed at the equilibrium next to x (n, d), and its loop.
 
-    The gaps that are given, or all but closed at x, less what pulls, and what overlaps
-    besides; x itself where Newton's method comes to nothing. `family` makes the family of
+    The gaps that are given, of those next to each other one, or all but closed at x, less
+    what pulls, and what overlaps besides; x itself where Newton's method comes to nothing. `family` makes the family of
     a contact, of whose parameter this is the value.
     """
     contact = Contact(strands_of(loop))
     near: Gaps | None = gaps
     if near is None:
         near, _ = contact.strands.near(x, _CLOSED)
+    else:
+        near = near[contact.strands.distinct(near)]
     for _ in range(_CHANGES):
         assert near is not None
         contact = replace(contact, touch=Touch(near, np.zeros(len(near), dtype=bool)))

@@ -34,7 +34,7 @@ from .motions import (
 from .rod import Rod as Rod
 from .spreads import contact_spreads as contact_spreads
 from .strands import Strands as Strands, strands_of as strands_of
-from .stretches import ALONG as ALONG, evenly as evenly
+from .stretches import ALONG as ALONG, from_one_strand as from_one_strand
 from .term import LEAST as LEAST, MOST as MOST, OwnTerm as OwnTerm, Term as Term
 from .turns import (
     EdgeTurns as EdgeTurns,

@@ -137,6 +137,11 @@ class Strands:
         found = np.vstack([pairs[:, :3], rows[:, :3]])
         return Gaps(found[:, 0], found[:, 1], slides), found[:, 2] - self.diameter
 
+    def nearest(self, x: FloatArray, reach: float) -> Gaps:
+        """Return where gaps are least and below reach, however strands spread there."""
+        least = self._least(self._curve(x), reach)
+        return Gaps(least[:, 0], least[:, 1], np.zeros(len(least), dtype=bool))
+
     def smallest_gap(self, x: FloatArray, reach: float) -> float:
         """Return the least of all gaps, between places where they are held too.
 

@@ -18,7 +18,8 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, LoopEnergy, Strands, with_gaps_held
-from eulerplateau.solvers.contact.keeping import CLOSED, Keeping, Touching
+from eulerplateau.solvers.contact.everywhere import Everywhere
+from eulerplateau.solvers.contact.keeping import CHANGES, CLOSED, Keeping, Touching
 from eulerplateau.solvers.contact.program import Program
 from eulerplateau.solvers.descent import (
     SMALLEST_RADIUS,
@@ -62,7 +63,7 @@ class ContactDescent:
             if at_rounding(state.model) and stability(state.model).n_unstable == 0:
                 other = self.keeping.mended(state)
                 if other is None:
-                    return state, Status.CONVERGED
+                    return self._everywhere.settled(state) or state, Status.CONVERGED
                 state = other
                 continue
             after = self._advance(state)
@@ -77,6 +78,11 @@ class ContactDescent:
     def _begun(self, x: FloatArray, before: Touching | None) -> Touching:
         if before is None:
             return self.keeping.at(x, self.strands.near(x, CLOSED)[0], FIRST_RADIUS)
+        before = replace(before, iteration=0)
+        if before.changes >= CHANGES:
+            settled = self._everywhere.again(before, x)
+            if settled is not None:
+                return settled
         state = self.keeping.moved(before, x, before.gaps, FIRST_RADIUS)
         return replace(state, iteration=0)
 
@@ -84,6 +90,10 @@ class ContactDescent:
     def keeping(self) -> Keeping:
         """How gaps are kept closed."""
         return Keeping(self.energy, self.strands)
+
+    @cached_property
+    def _everywhere(self) -> Everywhere:
+        return Everywhere(self.energy, self.strands)
 
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""

@@ -1,8 +1,8 @@
 """Which gaps of a loop are closed, and of which kind they are: what changes of that.
 
 Where strands cross they touch at a point, which slides as they move. Where they lie along
-each other they are held once an edge, and where on the edges is a convention of the mesh;
-in the end the middle of each stretch is one of the places.
+each other they are held once an edge, until forces balance; and then where it takes that to
+keep them apart in between (everywhere.py).
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from eulerplateau.loop import (
     LoopEnergy,
     Strands,
     contact_spreads,
-    evenly,
     passed,
     with_gaps_held,
 )
@@ -40,7 +39,7 @@ _PULLS = 1e-9
 # By which part of the diameter strands may overlap between vertices at which they are held
 # along each other; and how often that is mended, or strands that part are held at points.
 _BETWEEN = 1e-3
-_CHANGES = 3
+CHANGES = 3
 # Strands touch at a point where they spread so fast from there, d2D/ds2 in 1 / L, and do so
 # until they spread less than that; and than that in their least distance, on the way.
 _POINT, _LINE, _FLAT = 2.0, 1.0, 0.2
@@ -206,9 +205,9 @@ class Keeping:
 
         None if they are so, or have been mended too often.
         """
-        if state.changes >= _CHANGES or not len(state.gaps):
+        if state.changes >= CHANGES or not len(state.gaps):
             return None
-        return self._told(state) or self._parted(state) or self._laid_evenly(state)
+        return self._told(state) or self._parted(state)
 
     def _told(self, state: Touching) -> Touching | None:
         """Return the state with contacts at points, or along strands, as they spread.
@@ -247,8 +246,3 @@ class Keeping:
             return None
         kept = gaps.slides | self.strands.unlike(gaps, points, 1.05)
         return self._changed(state, gaps[kept].joined(points), state.laid)
-
-    def _laid_evenly(self, state: Touching) -> Touching | None:
-        """Return the state with strands held along each other at even places, else None."""
-        after = evenly(self.strands.knots, state.gaps, state.forces)
-        return None if after is None else self._changed(state, after, NO_GAPS)

@@ -27,6 +27,8 @@ from eulerplateau.arrays import BoolArray, FloatArray
 _STIFFENED = (1e-6, 1e-4, 1e-2)
 # A step is not made to fit its radius better than this.
 _FITS = 0.5
+# A gap, in units of L, that is not closed for less.
+_OPEN = 1e-12
 _SHIFTS = 40
 
 
@@ -94,19 +96,55 @@ class Program:
     def _least(
         self, hessian: FloatArray, shift: float
     ) -> tuple[FloatArray, BoolArray] | None:
-        # Slow to load, and asked for only where a step would let strands overlap.
-        from scipy.optimize import nnls
-
         try:
             factor = cho_factor(hessian + shift * np.eye(len(hessian)))
             free = -cho_solve(factor, self.gradient)
             moved = cho_solve(factor, self.rows.T)
-            upper = np.linalg.cholesky(self.rows @ moved).T
-            wanted = np.linalg.solve(upper.T, -(self.widths + self.rows @ free))
-            forces, _ = nnls(upper, wanted, maxiter=50 * len(wanted))
-        except (LinAlgError, RuntimeError):
+            forces = least_forces(self.rows @ moved, self.widths + self.rows @ free)
+        except LinAlgError:
             return None
         return free + moved @ forces, forces > 0.0
+
+
+def least_forces(gram: FloatArray, widths: FloatArray) -> FloatArray:
+    """Return the forces f (k,) >= 0 that make f.G f / 2 + f.w least, no gap w + G f < 0.
+
+    The active set of Lawson and Hanson (1974, chapter 23), on G (k, k) itself: gaps of near
+    places hang together, and what is closed but for rounding is not closed as well. Raises
+    LinAlgError if that comes to no end.
+    """
+    k = len(widths)
+    forces, active, asked = np.zeros(k), np.zeros(k, dtype=bool), np.ones(k, dtype=bool)
+    for _ in range(3 * k + 10):
+        left = np.where(active | ~asked, 0.0, widths + gram @ forces)
+        if left.min(initial=0.0) >= -_OPEN:
+            return forces
+        lowest = left.argmin()
+        active[lowest] = True
+        forces, active = _balanced(gram, widths, forces, active)
+        # What rounding lets go of at once would be closed again and again.
+        asked[lowest] = active[lowest]
+    raise LinAlgError("no forces are found that push")
+
+
+def _balanced(
+    gram: FloatArray, widths: FloatArray, forces: FloatArray, active: BoolArray
+) -> tuple[FloatArray, BoolArray]:
+    """Return forces that close the active gaps, those let go at which strands would pull."""
+    while active.any():
+        wanted = np.zeros_like(forces)
+        factor = cho_factor(gram[np.ix_(active, active)])
+        wanted[active] = -cho_solve(factor, widths[active])
+        pulls = active & (wanted <= 0.0)
+        if not pulls.any():
+            return wanted, active
+        parts = np.full_like(forces, np.inf)
+        span = np.maximum(forces[pulls] - wanted[pulls], np.finfo(np.float64).tiny)
+        parts[pulls] = forces[pulls] / span
+        forces = forces + float(parts.min()) * (wanted - forces)
+        active = active & (parts > parts.min())
+        forces[~active] = 0.0
+    return forces, active
 
 
 def _definite(matrix: FloatArray) -> bool:

@@ -20,13 +20,8 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.control import Direction, Motion, StepControl
 from eulerplateau.branches.family import Family
-from eulerplateau.branches.locus_between import (
-    Ahead,
-    Resolution,
-    Special,
-    corrected,
-    special_points,
-)
+from eulerplateau.branches.locus_ahead import Ahead, corrected
+from eulerplateau.branches.locus_between import Resolution, Special, special_points
 from eulerplateau.branches.locus_point import Course, LocusPoint, correct, trial
 from eulerplateau.branches.normal_form import NO_PART, part_along
 from eulerplateau.branches.point import BranchPoint
@@ -174,7 +169,7 @@ def _arm(
     """Yield the points after a start, in the direction it heads."""
     control = start.course.controls[0]
     home: Home = start.place, start.direction
-    before, step, ahead = start, control.first_step, Ahead.straight(start)
+    before, step, ahead = start, control.first_step, Ahead.of(start)
     for number in range(control.max_points):
         after = None
         while after is None and step > control.smallest_step:
@@ -192,7 +187,7 @@ def _arm(
             step = min(1.5 * step, control.largest_step)
         ahead, before = ahead.then(after), resolution.resolved(after)
         if before is not after:
-            ahead = Ahead.straight(before)
+            ahead = Ahead.of(before)
             home = tuple(resolution.carried(motion, after, before) for motion in home)
 
 

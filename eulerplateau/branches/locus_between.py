@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from functools import partial
 
-import numpy as np
-from scipy.linalg import LinAlgError
 from scipy.optimize import brentq
 
 from eulerplateau.branches.control import Motion
-from eulerplateau.branches.locus_point import LocusPoint, correct
+from eulerplateau.branches.locus_ahead import between, corrected
+from eulerplateau.branches.locus_point import LocusPoint
 from eulerplateau.branches.normal_form import NO_PART, part_along
 
-_PRECISION = 1e-11  # arclength to which special points are located
+# Arclength to which special points are located, and those where a fourth derivative, by
+# differences, vanishes: beyond that its sign is rounding's.
+_PRECISION, _ROUGHLY = 1e-11, 1e-8
 # Parts of the way between two points by which a singular one is passed.
 _ASIDE = 0.0, 1e-9, 1e-6, 1e-4, 1e-3
 
@@ -44,75 +44,14 @@ class Resolution:
         return motion
 
 
-@dataclass(frozen=True)
-class Ahead:
-    """Where a curve goes on from a point, as far as it turned between the ones before.
-
-    By the directions of up to three (Adams and Bashforth 1883): what none of them has in
-    it, as rigid motions, no step adds.
-
-    Attributes
-    ----------
-    reach : float, the way to the point from the one before, or 0
-    turned, steeper : how direction and steepness change, by arclength, on that way
-    bent, bowed : how these do, from the way before
-    """
-
-    point: LocusPoint
-    reach: float
-    turned: Motion
-    steeper: Motion
-    bent: Motion
-    bowed: Motion
-
-    @classmethod
-    def straight(cls, point: LocusPoint) -> Ahead:
-        """Return what is known of a first point alone."""
-        still = point.direction * 0.0
-        return cls(point, 0.0, still, still, still, still)
-
-    def then(self, point: LocusPoint) -> Ahead:
-        """Return what is known of the next point."""
-        before, way = self.point, point.direction
-        reach = point.dot(way, point.place - before.place)
-        turned = way - before.direction * (1 / point.dot(way, before.direction))
-        turned, steeper = (
-            change * (1 / reach) for change in (turned, point.steepness - before.steepness)
-        )
-        if self.reach == 0:
-            return Ahead(point, reach, turned, steeper, way * 0.0, way * 0.0)
-        both = 1 / (reach + self.reach)
-        bent, bowed = (turned - self.turned) * both, (steeper - self.steeper) * both
-        return Ahead(point, reach, turned, steeper, bent, bowed)
-
-    def reached(self, step: float) -> LocusPoint | None:
-        """Return the point at arclength `step` from there; None if it is not corrected."""
-        point, beyond = self.point, step + self.reach
-        bend = step**2 * (step / 3 + self.reach / 2)
-        guess = point.place + point.direction * step + self.turned * (0.5 * step**2)
-        steepness = point.steepness + self.steeper * step + self.bowed * (step * beyond)
-        near = replace(point, steepness=steepness)
-        found = corrected(near, guess + self.bent * bend, point)
-        with suppress(LinAlgError):
-            return found if found is None or np.isfinite(found.coefficient) else None
-        return None
-
-
-def corrected(near: LocusPoint, guess: Motion, heading: LocusPoint) -> LocusPoint | None:
-    """Return the point in the hyperplane through a guess, by what is known near by."""
-    modes = [near.model.displacement(mode) for mode in near.modes.T]
-    return correct(
-        near.course, near.family, guess, heading.direction, modes, near.steepness
-    )
-
-
 def special_points(before: LocusPoint, after: LocusPoint) -> Iterator[LocusPoint]:
     """Yield what is special between two neighbouring points, in order of arclength."""
     found = []
     # Where a bifurcation leaves folds their curve starts from its cusp.
     known = before.special == Special.CUSP
     if not known and before.coefficient * after.coefficient < 0:
-        point = _located(before, after, lambda point: point.coefficient)
+        precision = _ROUGHLY if before.course.symmetric else _PRECISION
+        point = _located(before, after, lambda point: point.coefficient, precision)
         if point is not None:
             found.append((point, _nature(point)))
     turns = before.direction.rates[1] * after.direction.rates[1] < 0
@@ -153,7 +92,10 @@ def _nature(point: LocusPoint) -> Special:
 
 
 def _located(
-    before: LocusPoint, after: LocusPoint, test: Callable[[LocusPoint], float]
+    before: LocusPoint,
+    after: LocusPoint,
+    test: Callable[[LocusPoint], float],
+    precision: float = _PRECISION,
 ) -> LocusPoint | None:
     """Return the point between two others where a test vanishes; None if it is lost."""
     way = after.place - before.place
@@ -162,10 +104,15 @@ def _located(
 
     def value(part: float) -> float:
         if part not in known:
-            near = min(known, key=lambda other: abs(other - part))
+            near = known[min(known, key=lambda other: abs(other - part))]
+            low = max(other for other in known if other < part)
+            high = min(other for other in known if other > part)
+            inner = (part - low) / (high - low)
+            guess, steepness = between(known[low], known[high], inner, before.direction)
+            near = replace(near, steepness=steepness)
             # Where another mode is lost, or folds end, the equations are singular.
-            ways = (before.place + way * (part + aside) for aside in _ASIDE)
-            tried = (corrected(known[near], place, before) for place in ways)
+            places = (guess + way * aside for aside in _ASIDE)
+            tried = (corrected(near, place, before) for place in places)
             found = next((point for point in tried if point is not None), None)
             if found is None:
                 raise ArithmeticError
@@ -173,7 +120,7 @@ def _located(
         return test(known[part])
 
     try:
-        root = brentq(value, 0.0, 1.0, xtol=_PRECISION / reach)
+        root = brentq(value, 0.0, 1.0, xtol=precision / reach)
         value(root)
     except (ArithmeticError, ValueError):
         return None

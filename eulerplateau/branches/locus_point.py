@@ -137,13 +137,14 @@ class LocusPoint:
         """
         return self.near.cubic() if self.course.symmetric else self.near.quadratic()
 
-    @property
+    @cached_property
     def others(self) -> FloatArray:
         """The eigenvalues of all other modes, ascending."""
-        values, vectors = self.model.eigen
-        lost = np.sum((vectors.T @ self.modes) ** 2, axis=1)
-        others: FloatArray = np.sort(values[np.argsort(lost)[: -self.modes.shape[1]]])
-        return others
+        hessian, modes = self.model.hessian, self.modes
+        # Those that are lost come to lie above all others.
+        above = 2 * float(np.abs(hessian).sum(axis=1).max())
+        values = np.linalg.eigvalsh(hessian + (above * modes) @ modes.T)
+        return values[: -modes.shape[1]].astype(np.float64, copy=False)
 
     @property
     def n_unstable(self) -> int:
@@ -177,7 +178,7 @@ class Trial:
         """The loop and both values."""
         return Motion(self.model.x, self.values)
 
-    @property
+    @cached_property
     def slopes(self) -> FloatArray:
         """The derivative of g by both parameters in their units, as columns (m, 2)."""
         model, names = self.model, (self.family.parameter, self.course.second)
@@ -211,15 +212,19 @@ class Trial:
     def completed(self, normal: Motion, corrections: int) -> LocusPoint:
         """Return the point that this is, heading as `normal`; raises LinAlgError."""
         course, model = self.course, self.model
-        near = Neighbourhood(self.energy, model, self.modes)
+        # Asked for here, before the film has been to the loops near by.
+        upper = self.slopes
         names = self.family.parameter, course.second
+        near = Neighbourhood(self.energy, model, self.modes, names)
         mixed = np.array([near.mixed(name) for name in names]) * course.units
         row = np.append(near.steepness(), mixed)
         steepness = course.motion(model, row)
-        null = np.linalg.qr(self.system(steepness).T, mode="complete")[0][:, -1]
+        matrix = self.system(steepness, normal)
+        along = np.zeros(len(matrix))
+        along[len(upper) + 1] = 1.0
+        null = np.linalg.solve(matrix, along).astype(np.float64)
         direction = course.motion(model, null[: len(row)])
         size = float(np.sqrt(course.dot(model, direction, direction)))
-        ahead = course.dot(model, direction, normal)
         return LocusPoint(
             course=course,
             family=self.family,
@@ -227,7 +232,7 @@ class Trial:
             values=self.values,
             near=near,
             steepness=steepness,
-            direction=direction * float(np.copysign(1 / size, ahead)),
+            direction=direction * (1 / size),
             corrections=corrections,
         )
 

@@ -23,7 +23,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers import Directional, TangentModel, directional
+from eulerplateau.solvers import TangentModel, directional
 
 # Displacement, r.m.s. in L, between which differences are taken.
 _STEP = 5e-4
@@ -45,13 +45,14 @@ class Neighbourhood:
     ----------
     model : at the equilibrium
     modes : (m, k) float, orthonormal null vectors of its Hessian
+    parameters : names of parameters by which derivatives are asked for
     """
 
     energy: LoopEnergy
     model: TangentModel
     modes: FloatArray
-    _known: dict[tuple[int, float], Directional] = field(default_factory=dict, repr=False)
-    _pulls: dict[tuple[int, float], FloatArray] = field(default_factory=dict, repr=False)
+    parameters: tuple[str, ...] = ()
+    _known: dict[tuple[int, float], FloatArray] = field(default_factory=dict, repr=False)
 
     def steepness(self) -> FloatArray:
         """Return the mean over the modes of D3[phi, phi, .] (m,).
@@ -78,9 +79,10 @@ class Neighbourhood:
 
     def mixed(self, parameter: str) -> float:
         """Return phi^T (dH / dparameter) phi, the mean over the modes."""
+        which = 1 + self.parameters.index(parameter)
         changes = []
         for number, mode in enumerate(self.modes.T):
-            ahead, behind = (self._work(number, s, parameter) for s in (_STEP, -_STEP))
+            ahead, behind = (self._beside(number, s)[:, which] for s in (_STEP, -_STEP))
             changes.append(float((ahead - behind) @ mode) / (2 * _STEP))
         return float(np.mean(changes))
 
@@ -88,11 +90,23 @@ class Neighbourhood:
         """Return D3 (m,) along a mode, good to the step's second order."""
         return (self._pull(number, step) - self._pull(number, -step)) / (2 * step)
 
-    def _beside(self, number: int, step: float) -> Directional:
-        """Return the second variation along a mode; raises LinAlgError if there is none."""
+    def _pull(self, number: int, step: float) -> FloatArray:
+        """Return H phi (m,) at a loop along a mode, in the coordinates here."""
+        return self._beside(number, step)[:, 0]
+
+    def _beside(self, number: int, step: float) -> FloatArray:
+        """Return H phi and dg/dparameter of each, as columns, at a loop along a mode.
+
+        In the coordinates here. All at once, as a film knows the last loops only. Raises
+        LinAlgError if there is no such loop.
+        """
         if (number, step) not in self._known:
-            x = self._moved(step * self.modes[:, number])
-            self._known[number, step] = directional(self.energy, x)
+            mode, energy = self.modes[:, number], self.energy
+            there = directional(energy, self._moved(step * mode))
+            rates = (energy.rate(name, there.x) for name in self.parameters)
+            forces = [there.pull(self.model.displacement(mode)), *map(there.left, rates)]
+            columns = np.stack([force.ravel() for force in forces], axis=1)
+            self._known[number, step] = self.model.coordinates.slope(columns)
         return self._known[number, step]
 
     def _moved(self, coefficients: FloatArray) -> FloatArray:
@@ -108,19 +122,6 @@ class Neighbourhood:
                 raise LinAlgError("no loop along the mode keeps its length")
             x = kept
         return x
-
-    def _pull(self, number: int, step: float) -> FloatArray:
-        """Return H phi (m,) at a loop along a mode, in the coordinates here."""
-        if (number, step) not in self._pulls:
-            moved = self.model.displacement(self.modes[:, number])
-            pull = self._beside(number, step).pull(moved)
-            self._pulls[number, step] = self.model.slope(pull)
-        return self._pulls[number, step]
-
-    def _work(self, number: int, step: float, parameter: str) -> FloatArray:
-        """Return dg/dparameter (m,) at a loop along a mode, in the coordinates here."""
-        beside = self._beside(number, step)
-        return self.model.slope(beside.left(self.energy.rate(parameter, beside.x)))
 
     def _fourth(self, number: int, step: float) -> FloatArray:
         """Return D4 (1,) along a mode, good to the step's second order."""

@@ -21,8 +21,9 @@ from eulerplateau.film.folds import is_folded, laid_anew
 from eulerplateau.film.free_film import FreeFilm
 from eulerplateau.film.free_moves import FreeInterior
 from eulerplateau.film.harmonic import Follower, balance, follower
+from eulerplateau.film.heights_film import HeightsFilm
 from eulerplateau.film.indefinite import IndefiniteFactor
-from eulerplateau.film.interior import HeightsFilm, LocalFilm
+from eulerplateau.film.interior import LocalFilm
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
 from eulerplateau.film.normal_moves import normal_heights

@@ -37,6 +37,10 @@ class Area(Term):
         """Return the second derivative (3 n_b, 3 n_b)."""
         return self.load * self.local.relax(x).hessian
 
+    def product(self, x: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the second derivative times a step (n_b, 3)."""
+        return self.load * self.local.relax(x).product(step)
+
     def change(self, x: FloatArray, step: FloatArray) -> float:
         """Return the change of the area, summed triangle by triangle as differences."""
         before, after = self.local.relax(x), self.local.relax(x + step)

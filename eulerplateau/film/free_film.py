@@ -26,7 +26,8 @@ class FreeFilm(LocalFilm):
         """Return whether the film is where it was made: it is as good anywhere."""
         return True
 
-    def _stiffness(self, sides: TriangleGeometry) -> Condensation:
+    def stiffness(self, sides: TriangleGeometry) -> Condensation:
+        """Return the factorised interior of a film."""
         return self.variations.stiffened(sides, STILL)[0]
 
     def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:

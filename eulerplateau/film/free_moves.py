@@ -15,7 +15,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.condensation import Condensation, factorise
-from eulerplateau.film.elimination import Elimination, plan, summed
+from eulerplateau.film.elimination import Elimination, plan
 from eulerplateau.film.indefinite import IndefiniteFactor
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 from eulerplateau.film.with_loop import LoopStiffness
@@ -83,11 +83,15 @@ class FreeInterior:
         """Raise LinAlgError: a free film is condensed."""
         raise LinAlgError("a free film is condensed")
 
-    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
-        """Return H m inside (3 n_i,)."""
-        i, k = self.tiling.pairs
-        pull = np.einsum("pcd,pd->pc", blocks, moved[k])
-        return self.work(summed(i, pull, self.tiling.n_v))
+    def followed(self, moved: FloatArray) -> FloatArray:
+        """Return a displacement (n_b, 3) of the loop alone (n_v, 3)."""
+        whole = np.zeros((self.tiling.n_v, 3))
+        whole[self.tiling.loop] = moved
+        return whole
+
+    def carried(self, forces: FloatArray) -> FloatArray:
+        """Return those on the loop (n_b, 3)."""
+        return forces[self.tiling.loop]
 
     def _stiffened(self, blocks: FloatArray, shift: float) -> FloatArray:
         blocks = blocks.copy()

@@ -35,20 +35,14 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film.condensation import Condensation
-from eulerplateau.film.free_moves import is_rest
 from eulerplateau.film.harmonic import Follower
-from eulerplateau.film.normal_moves import InteriorUnknowns, NormalHeights
+from eulerplateau.film.normal_moves import InteriorUnknowns
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 
-_STEPS = 30
 # Parts of a predicted change that are tried, as long as triangles fold over.
 _PARTS = 1.0, 0.5, 0.25
-# Part of the error that a step with an old factorised Hessian may leave.
-_SLOW = 0.1
-# Cosine of the tilt of normals beyond which a reference shape gives way to a new one, and
-# up to which a film counts as being where its reference is.
+# Cosine of the tilt of normals beyond which a reference shape gives way to a new one.
 _TILT = 0.9
-_NO_TILT = 1 - 1e-10
 
 
 @dataclass(frozen=True)
@@ -90,10 +84,15 @@ class FilmAtRest:
         """The second variation with the interior eliminated."""
         return self.local.variations.condense(self.second)
 
+    @cached_property
+    def inside(self) -> Condensation:
+        """The interior factorised: that of `condensed` if it has been asked for."""
+        return self.__dict__.get("condensed") or self.local.stiffness(self.sides)
+
     @property
     def factorised(self) -> Condensation | None:
-        """What `condensed` is if it has been asked for, else None."""
-        return self.__dict__.get("condensed")
+        """The factorised interior if it has been asked for, else None."""
+        return self.__dict__.get("condensed") or self.__dict__.get("inside")
 
     @property
     def central(self) -> bool:
@@ -110,11 +109,24 @@ class FilmAtRest:
 
     def response(self, followed: FloatArray) -> FloatArray:
         """Return how u changes (n_u,) on a film whose mesh has moved (n_v, 3)."""
-        return self.answered(followed, self.condensed)
+        return self.answered(followed, self.inside)
 
     def answered(self, followed: FloatArray, inverse: Condensation) -> FloatArray:
         """Return the same by a factorised interior, which may be that of a film near by."""
-        return -inverse.solve(self.local.variations.forces(self.second, followed))
+        return -inverse.solve(self.local.variations.work(self._pull(followed)))
+
+    def product(self, moved: FloatArray) -> FloatArray:
+        """Return `hessian` times a displacement of the loop (n_b, 3), without making it."""
+        variations = self.local.variations
+        pull = self._pull(variations.followed(moved))
+        inside = np.zeros_like(pull)
+        inside[self.local.tiling.interior] = variations.displaced(
+            -self.inside.solve(variations.work(pull))
+        )
+        return variations.carried(pull + self._pull(inside))
+
+    def _pull(self, moved: FloatArray) -> FloatArray:
+        return self.local.tiling.pull(self.second, moved)
 
     @cached_property
     def second(self) -> FloatArray:
@@ -157,7 +169,7 @@ class LocalFilm(ABC):
         """Return whether a film at rest is where this one was made."""
 
     @abstractmethod
-    def _stiffness(self, sides: TriangleGeometry) -> Condensation:
+    def stiffness(self, sides: TriangleGeometry) -> Condensation:
         """Return the factorised interior of a film."""
 
     @abstractmethod
@@ -237,7 +249,7 @@ class LocalFilm(ABC):
         They come to rest in steps that are cheaper, and less far below rounding.
         """
         if not self._inverse:
-            self._inverse.append(self._stiffness(found.sides))
+            self._inverse.append(found.inside)
 
     def _known(self) -> Condensation | None:
         """Return a factorised interior of the last film, or of one near it, if there is."""
@@ -248,53 +260,3 @@ class LocalFilm(ABC):
         """Return whether every triangle shows the side that the reference shows."""
         turned = (sides.normals * self.sides.normals).sum(axis=1)
         return bool((sides.areas > 0).all() and (turned > LIMITS.folded).all())
-
-
-@dataclass(frozen=True)
-class HeightsFilm(LocalFilm):
-    """A film whose vertices inside move along normals only."""
-
-    variations: NormalHeights
-
-    @property
-    def is_free(self) -> bool:
-        """Whether its vertices are free to move: they are not."""
-        return False
-
-    def is_central(self, sides: TriangleGeometry) -> bool:
-        """Return whether the film's normals are those at which it was made."""
-        return self.tilt(sides) > _NO_TILT
-
-    def _stiffness(self, sides: TriangleGeometry) -> Condensation:
-        return self.variations.stiffness(sides)
-
-    def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
-        variations = self.variations
-        inverse = self._known()
-        error, fresh = np.inf, False
-        for _ in range(_STEPS):
-            force = variations.work(state.gradient)
-            before, error = error, float(np.abs(force).max(initial=0.0))
-            if is_rest(state.sides, error, before, fresh):
-                return state
-            fresh = inverse is None or error > _SLOW * before
-            if inverse is None or fresh:
-                inverse = variations.stiffness(state.sides)
-                if self._inverse:
-                    self._inverse[:] = [inverse]
-            state = self._descend(base, state, force, inverse)
-        raise LinAlgError("the film does not come to rest")
-
-    def _descend(
-        self, base: FloatArray, state: FilmAtRest, force: FloatArray, inverse: Condensation
-    ) -> FilmAtRest:
-        """Return the film after one Newton step, shortened until the area falls."""
-        step = -inverse.solve(force)
-        slope = float(force @ step)
-        for _ in range(20):
-            after = self._at(base, state.u + step)
-            small = abs(slope) < 1e-15 * state.area
-            if after and (small or self.tiling.change(state.x, after.x) <= 0.1 * slope):
-                return after
-            step, slope = 0.5 * step, 0.5 * slope
-        raise LinAlgError("no step makes the film smaller")

@@ -52,8 +52,11 @@ class InteriorUnknowns(Protocol):
         vanishes, or where nothing but condensing will do.
         """
 
-    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
-        """Return what a displacement (n_v, 3) of all does along the unknowns (n_u,)."""
+    def followed(self, moved: FloatArray) -> FloatArray:
+        """Return how the film (n_v, 3) follows its loop (n_b, 3) while they are kept."""
+
+    def carried(self, forces: FloatArray) -> FloatArray:
+        """Return what forces (n_v, 3) then come to on the loop (n_b, 3): the adjoint."""
 
 
 @dataclass(frozen=True)
@@ -133,11 +136,13 @@ class NormalHeights:
         kept = weight[:, None, None] * blocks[loop]
         return up, across.ravel(), kept.ravel()
 
-    def forces(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
-        """Return n . H m (n_i,)."""
-        i, k = self.tiling.pairs
-        pull = np.einsum("pc,pc->p", self._along(blocks), moved[k])
-        return summed(i, pull, self.tiling.n_v)[self.tiling.interior]
+    def followed(self, moved: FloatArray) -> FloatArray:
+        """Return w dx_b (n_v, 3) of a displacement dx (n_b, 3)."""
+        return self.weight[:, None] * moved[self.leader]
+
+    def carried(self, forces: FloatArray) -> FloatArray:
+        """Return the sums of w f (n_b, 3) over all that follow a vertex."""
+        return summed(self.leader, self.weight[:, None] * forces, len(self.tiling.loop))
 
     def _along(self, blocks: FloatArray) -> FloatArray:
         """Return n_i . H_ik (m, 3)."""

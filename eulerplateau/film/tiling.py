@@ -181,6 +181,11 @@ class Tiling:
         area_kernels.sum_hessian(sides.cotangent, sides.normals, place, blocks)
         return blocks
 
+    def pull(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
+        """Return a `hessian` (m, 3, 3) times a displacement (n_v, 3)."""
+        i, k = self.pairs
+        return summed(i, np.einsum("pcd,pd->pc", blocks, moved[k]), self.n_v)
+
     @property
     def pairs(self) -> tuple[IntArray, IntArray]:
         """The vertices of every entry (m,) of a matrix (n_v, n_v): its row, its column."""

@@ -142,14 +142,19 @@ class Turned:
 
     def displacement(self, coefficients: FloatArray) -> FloatArray:
         """Return the displacements (d n, k) of coordinates (m, k)."""
-        y = solve_triangular(self.root, coefficients, lower=True, trans=1)
+        y = self._solved(coefficients, 1)
         return self.turns.displacement(self.reflections.back(y))
 
     def slope(self, forces: FloatArray) -> FloatArray:
         """Return what forces (d n, k) are by the coordinates (m, k)."""
         work = self.reflections.rest(self.turns.work(forces))
-        slope: FloatArray = solve_triangular(self.root, work, lower=True)
-        return slope
+        return self._solved(work, 0)
+
+    def _solved(self, y: FloatArray, trans: int) -> FloatArray:
+        found: FloatArray = solve_triangular(
+            self.root, y, lower=True, trans=trans, check_finite=False
+        )
+        return found
 
     def hessian(
         self, energy: LoopEnergy, x: FloatArray, tensions: FloatArray

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -20,9 +21,12 @@ from eulerplateau.branches import (
     locus_start,
     special_at,
 )
+from eulerplateau.branches.control import Motion
+from eulerplateau.branches.locus_ahead import Ahead, between
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LoopEnergy, Term, Unconstrained
 from eulerplateau.threads import one_thread
+from tests.helpers import shapes
 
 # Energies of (x, y) and (p, r): slope, second derivative, derivative of the slope by p, r.
 Jet = Callable[[float, float, float, float], tuple[object, object, object, object]]
@@ -156,6 +160,43 @@ def test_folds_go_through_their_cusp() -> None:
     for point in points:  # a_2 = 3 x, up to the mode's sign
         x = point.model.x[0, 0]
         assert abs(point.coefficient) == pytest.approx(3 * abs(x), abs=1e-6)
+
+
+def spaced(step: float, count: int) -> list[LocusPoint]:
+    """Points of a parabola, the steps between them as good as even."""
+    control = StepControl((-2.0, 2.0), 1.0, step, step, least=-np.inf)
+    special = special_at(ExactFamily(parabola, 0.04), np.zeros((2, 1)), 0.2, FOLD)
+    with one_thread():
+        points = follow_locus(locus_start(special, "r", 0.04, (control, control)))
+        return list(islice((it for it in points if it.special != Special.TURN), count))
+
+
+def test_a_curve_goes_on_as_six_points_say_and_as_two_do_between() -> None:
+    steps, ahead, amid = [0.02, 0.01], [], []
+    for step in steps:
+        *known, last = spaced(step, 7)
+        way = known[-1].direction
+        reach = last.dot(way, last.place - known[-1].place)
+        going = Ahead(tuple(reversed(known)), way * 0.0)
+        missed = going.guess(reach)[0] - last.place
+        ahead.append(np.sqrt(last.dot(missed, missed)))
+        p, r = between(known[-1], last, 0.5, way)[0].rates
+        amid.append(abs(r - p**2))
+    assert shapes.fitted_order(steps, ahead) == pytest.approx(7, abs=0.6)
+    assert shapes.fitted_order(steps, amid) == pytest.approx(4, abs=0.1)
+
+
+def test_what_a_step_misses_the_next_one_does_not() -> None:
+    """Of directions that are all wrong by the same."""
+    known = spaced(0.02, 8)
+    wrong = Motion(np.zeros((2, 1)), np.array([1e-3, -1e-3]))
+    bent = [replace(point, direction=point.direction + wrong) for point in known]
+    ahead = Ahead.of(bent[0])
+    for point in bent[1:-1]:
+        ahead = ahead.then(point)
+    step = known[-2].dot(bent[-2].direction, known[-1].place - known[-2].place)
+    missed = ahead.guess(step)[0] - known[-1].place
+    assert np.sqrt(known[-1].dot(missed, missed)) < 0.05 * 1e-3 * step
 
 
 def test_a_bifurcation_that_the_second_parameter_breaks_leaves_its_folds() -> None:

@@ -66,6 +66,19 @@ def test_condensed_hessian_is_the_schur_complement(local: LocalFilm) -> None:
     np.testing.assert_array_equal(found.hessian, found.hessian.T)
 
 
+@pytest.mark.parametrize("free", [False, True])
+def test_product_with_the_hessian_needs_none(local: LocalFilm, free: bool) -> None:
+    if free:
+        film = area(mesh := enneper(4, 0.2)).of_loop(mesh.shape)
+        local = film.released(mesh.x[mesh.loop]).local
+    assert local.is_free == free
+    step = shapes.wave(n := len(local.tiling.loop), 1.0)
+    x_loop = local.x[local.tiling.loop] + shapes.wave(n, 0.01)
+    product = local.relax(x_loop).product(step)
+    expected = (local.relax(x_loop).hessian @ step.ravel()).reshape(n, 3)
+    np.testing.assert_allclose(product, expected, atol=1e-10 * np.abs(expected).max())
+
+
 @pytest.mark.parametrize("load", [30.0, 3000.0])
 def test_condensed_hessian_has_the_index_of_the_whole(
     local: LocalFilm, load: float

@@ -1,10 +1,11 @@
-"""Follow curves of special points without a mesh, and films; print seconds of CPU."""
+"""Follow curves of special points, without a mesh and on meshes; print seconds of CPU."""
 
 from __future__ import annotations
 
 import math
 import time
 from collections.abc import Callable
+from functools import partial
 from itertools import islice
 
 import click
@@ -28,9 +29,13 @@ from eulerplateau.branches.conformal import (
     stiffness,
 )
 from eulerplateau.branches.conformal.by_writhe import lobes_at
+from eulerplateau.branches.locus_between import Resolution
 from eulerplateau.exact.conformal import TWISTED, disk, make_basis
 from eulerplateau.threads import one_thread
 from scripts.studies.common import machine, markdown_table
+from scripts.studies.locus_speed.on_meshes import of_flat_lobes, of_round_film
+
+Cases = dict[str, Callable[[], float]]
 
 # Points before which nothing counts: what is compiled is loaded then.
 _WARM = 3
@@ -62,9 +67,11 @@ def of_lobes() -> LocusPoint:
     return locus_start(special, "twist_ratio", ratio, (first, StepControl((0.0, 1.0), 1.0)))
 
 
-def seconds_of_points(start: LocusPoint, count: int) -> float:
+def seconds_of_points(
+    start: LocusPoint, count: int, resolution: Resolution | None = None
+) -> float:
     """Return the seconds of CPU that so many points of a curve take."""
-    points = follow_locus(start, resolution=Harmonics())
+    points = follow_locus(start, resolution=resolution or Resolution())
     list(islice(points, _WARM))
     began = time.process_time()
     found = sum(1 for _ in islice(points, count))
@@ -84,24 +91,40 @@ def seconds_of_film(start: Start, load: float, link: float) -> float:
 @click.option("--repeat", default=3, help="How often each is done.")
 def main(points: int, repeat: int) -> None:
     """Print a table: median, least and most seconds of CPU."""
-    cases: dict[str, Callable[[], float]] = {
+    exact: Cases = {
         f"{points} points, the disk's link over its load": lambda: seconds_of_points(
-            of_disk(), points
+            of_disk(), points, Harmonics()
         ),
         f"{points} points, the load at which lobes twist over C/B": lambda: (
-            seconds_of_points(of_lobes(), points)
+            seconds_of_points(of_lobes(), points, Harmonics())
         ),
         "the disk at 1000, Lk = 0.2": lambda: seconds_of_film(Start.DISK, 1000.0, 0.2),
         "lobes at 1600, Lk = 0": lambda: seconds_of_film(Start.LOBES, 1600.0, 0.0),
         "lobes at 1600, Lk = 0.5": lambda: seconds_of_film(Start.LOBES, 1600.0, 0.5),
     }
-    rows: list[tuple[str, ...]] = [("without a mesh", "median (s of CPU)", "least", "most")]
+    round_film = of_round_film()
+    on_meshes: Cases = {
+        "area, the disk's link over its load": partial(
+            seconds_of_points, round_film, points
+        )
+    }
+    for film in ("area", "springs"):
+        for second, name in (("twist_ratio", "C/B"), ("link", "Lk")):
+            start = of_flat_lobes(film, second)
+            name = f"{film}, the load at which lobes twist over {name}"
+            on_meshes[name] = partial(seconds_of_points, start, points)
     with one_thread():
-        for name, case in cases.items():
-            taken = [case() for _ in range(repeat)]
-            rows.append((name, *(f"{f(taken):.3g}" for f in (np.median, np.min, np.max))))
-    click.echo(markdown_table(rows, 1))
+        click.echo(_table("without a mesh", exact, repeat))
+        click.echo(_table(f"{points} points on meshes of 474 vertices", on_meshes, repeat))
     click.echo(machine())
+
+
+def _table(head: str, cases: Cases, repeat: int) -> str:
+    rows: list[tuple[str, ...]] = [(head, "median (s of CPU)", "least", "most")]
+    for name, case in cases.items():
+        taken = [case() for _ in range(repeat)]
+        rows.append((name, *(f"{f(taken):.3g}" for f in (np.median, np.min, np.max))))
+    return markdown_table(rows, 1)
 
 
 if __name__ == "__main__":

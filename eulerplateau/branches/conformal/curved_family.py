@@ -14,22 +14,21 @@ from eulerplateau.branches.conformal.rod_term import SmoothRod
 from eulerplateau.branches.conformal.terms import Unknowns
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.exact.conformal import (
-    Curve,
     gauge_fields,
-    gauge_modes,
-    slides,
+    independent,
+    kept_fields,
 )
 from eulerplateau.solvers import Stability
 
 
 @dataclass(frozen=True)
 class CurvedFamily(SmoothFamily):
-    """The same, with "rest_curvature" among the values; the link is 0."""
+    """The same, with "rest_curvature" among the values; the link is not varied."""
 
     @cached_property
     def frames(self) -> Frames:
         """What stands for the frame."""
-        return Frames(self.basis)
+        return Frames(self.basis, self.values["link"])
 
     @cached_property
     def unknowns(self) -> Unknowns:
@@ -57,9 +56,10 @@ class CurvedFamily(SmoothFamily):
         frame = self.frames.embed(Frames(other.basis), angles)
         return self.unknowns.x(self.basis.embed(other.basis, coefficients), frame)
 
-    def framed(self, x: FloatArray) -> FloatArray:
-        """Return a loop x (size, 1) without a frame with one that is twisted evenly."""
-        coefficients = self.unknowns.scale * x[:, 0]
+    def framed(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
+        """Return another family's film, without a frame, with one that is twisted evenly."""
+        there = other.unknowns.loop(x).coefficients
+        coefficients = self.basis.transfer(other.basis, there)
         frame = self.frames.even(self.basis.curve(coefficients))
         return self.unknowns.x(coefficients, frame)
 
@@ -70,25 +70,16 @@ class CurvedFamily(SmoothFamily):
         return self.unknowns.x(self.basis.transfer(other.basis, coefficients), frame)
 
     def _free_motions(self, x: FloatArray) -> FloatArray:
-        u, curve = self.unknowns, self.unknowns.loop(x).curve
-        loops = gauge_modes(u.basis, curve)
-        frame = self.frames.project(self._turning(curve, x, loops))
-        return np.vstack([loops, frame]) / u.scales[:, None]
-
-    def _turning(self, curve: Curve, x: FloatArray, loops: FloatArray) -> FloatArray:
-        """Return how psi (n, m) changes in motions of the loop (size, m) that cost nothing.
-
-        Each turns the loop by omega and lets it slide by a x': both are found from the
-        displacement, which is a sum of these.
-        """
-        basis = self.basis
+        """Return what costs nothing: turning with its frame, and sliding along itself."""
+        u, basis, frames = self.unknowns, self.basis, self.frames
+        if basis.keeps_half_turns:
+            return np.zeros((len(u.scales), 0))
+        curve = u.loop(x).curve
         fields = gauge_fields(basis, curve)
-        inside = (fields - fields.mean(axis=0)).reshape(-1, fields.shape[2])
-        moved = np.array([basis.curve(c).x.ravel() for c in loops.T])
-        moved = moved.reshape(loops.shape[1], len(inside)).T
-        share = np.linalg.lstsq(inside, moved, rcond=1e-9)[0]
-        turned = np.column_stack([self.frames.turned(curve, e) for e in np.eye(3)])
-        _, turning = self.frames.angle(self.unknowns.others(x))
-        slid = (slides(basis) / basis.rate * turning).T
-        changed: FloatArray = np.column_stack([turned, slid]) @ share
-        return changed
+        inside = basis.project(fields)
+        _, turning = frames.angle(u.others(x))
+        turned = [frames.turned(curve, axis) for axis in np.eye(3)]
+        slid = basis.slides / basis.rate * turning
+        motions = np.vstack([inside, frames.project(np.vstack([turned, slid]).T)])
+        kept = kept_fields(basis, fields, inside)
+        return independent(motions[:, kept] / u.scales[:, None])

@@ -144,7 +144,7 @@ class SmoothFamily:
 
     def at_once(self, point: BranchPoint) -> Stability:
         """Return the spectrum among all loops by one matrix, whatever the energy is."""
-        basis = make_basis(self.basis.harmonics, GENERAL, self.basis.crowding)
+        basis = self.basis.like(self.basis.harmonics, GENERAL, self.basis.crowding)
         family = replace(self, basis=basis)
         energy = family.energy(point.value)
         return stability(tangent_model(energy, family.carried(self, point.x)))

@@ -114,7 +114,8 @@ def rod_film(
     """
     checked(load, twist_ratio, link, rest_curvature)
     if start is Start.LOBES and link < 0:
-        return rod_film(start, load, twist_ratio, -link, tell=tell).mirrored()
+        right = rod_film(start, load, twist_ratio, -link, rest_curvature, tell)
+        return right.mirrored()
     values = {"load": load, "twist_ratio": twist_ratio, "link": link}
     found = _straight_rod(start, values, tell)
     return _measured(curved(found, rest_curvature, tell) if rest_curvature else found)
@@ -144,14 +145,9 @@ def checked(
     finite("twist_ratio", twist_ratio)
     if finite("link", abs(link)) != 0 and twist_ratio == 0:
         raise SpecError("link", "needs a twist ratio: twist that costs nothing is lost")
-    if finite("rest_curvature", rest_curvature) == 0:
-        return
-    if twist_ratio == 0:
+    if finite("rest_curvature", rest_curvature) != 0 and twist_ratio == 0:
         problem = "needs a twist ratio: a rod that twists for nothing turns as it likes"
         raise SpecError("rest_curvature", problem)
-    if link != 0:
-        problem = "should be 0 with a rest curvature: a rod that was turned has a weld"
-        raise SpecError("link", f"{problem}, which meshes know")
 
 
 @dataclass(frozen=True)

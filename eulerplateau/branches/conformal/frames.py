@@ -11,7 +11,8 @@ the direction d_1 in which the rod is curved by nature turns by the angle psi. T
 
 primes being derivatives by phi. On a flat loop that lies in its own plane by nature d_1 is
 its normal, psi = -pi/2, and so psi = -pi/2 + chi, chi a trigonometric polynomial: the rod
-was not turned before it was welded.
+was not turned before it was welded. If it was turned `link` times, psi = -pi/2 +
+link (phi - pi) + chi for phi from 0, where it was welded, to 2 pi.
 """
 
 from __future__ import annotations
@@ -23,17 +24,19 @@ from math import pi
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.conformal import GENERAL, Basis, Curve, Jet, dot, variables, waves
+from eulerplateau.exact.conformal import GENERAL, Basis, Curve, Jet, dot, variables
 
 
 @dataclass(frozen=True)
 class Frames:
     """What stands for chi along the loops of a basis: coefficients of cos and sin k phi.
 
-    With the half-turns of the loops of `basis`, chi is a sum of sines of even k.
+    With the half-turn about x of the loops of `basis` chi is a sum of sines, with all
+    half-turns, which a rod that was turned does not have, of even k.
     """
 
     basis: Basis
+    link: float = 0.0
 
     @cached_property
     def columns(self) -> tuple[tuple[str, int], ...]:
@@ -41,19 +44,26 @@ class Frames:
         most = self.basis.harmonics
         if self.basis.family is GENERAL:
             every = ((kind, k) for k in range(1, most + 1) for kind in ("cos", "sin"))
-            return ("cos", 0), *every
-        return tuple(("sin", k) for k in range(2, most + 1, 2))
+            return self.basis.completed((("cos", 0), *every))
+        step = 2 if self.basis.keeps_half_turns else 1
+        sines = tuple(("sin", k) for k in range(step, most + 1, step))
+        return self.basis.completed(sines)
 
     @cached_property
     def wavenumbers(self) -> FloatArray:
         """The k of each coefficient."""
-        return np.array([k for _, k in self.columns], dtype=np.float64)
+        return self.basis.waves_in(self.columns)
 
     @cached_property
     def _values(self) -> tuple[FloatArray, FloatArray]:
         """The columns' values and derivatives at the grid, (n, m) each."""
-        values, slopes, _ = waves(self.columns, self.basis.phi)
+        values, slopes, _ = self.basis.waves(self.columns)
         return values, slopes
+
+    @cached_property
+    def _projector(self) -> FloatArray:
+        """What takes angles (n,) to coefficients (m, n)."""
+        return self.basis.projector(self._values[0])
 
     @cached_property
     def design(self) -> FloatArray:
@@ -67,35 +77,31 @@ class Frames:
         return found
 
     def angle(self, chi: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return psi and its derivative by phi, (n,) each."""
-        values, slopes = self._values
-        return values @ chi - pi / 2, slopes @ chi
+        """Return psi and its derivative by the grid's variable, (n,) each."""
+        (values, slopes), basis = self._values, self.basis
+        turned = self.link * (basis.phi % (2 * pi) - pi) - pi / 2
+        return values @ chi + turned, slopes @ chi + self.link * basis.spacing
 
     def bent_and_twisted(self, curve: Curve, chi: FloatArray) -> tuple[Jet, Jet, Jet]:
         """Return k_1 ds/dphi, Omega ds/dphi and ds/dphi by (x', x'', psi, psi')."""
-        psi, rate = self.angle(chi)
-        given = np.column_stack([curve.x1, curve.x2, psi, rate])
-        px, py, pz, qx, qy, qz, angle, turning = variables(given)
-        p, q = [px, py, pz], [qx, qy, qz]
-        u = dot(p, p)
-        speed = u.power(0.5)
-        # s^2 u, and t'.z and t'.(t x z) times u / speed.
-        flat = px * px + py * py
-        upwards = qz - dot(p, q) * pz / u
-        sideways = (qx * py - qy * px) / u
-        bent = angle.cos() * upwards + angle.sin() * sideways * speed
-        bent = bent / flat.power(0.5)
-        twisted = turning - pz * sideways * speed / flat
-        return bent, twisted, speed
+        return _bent_and_twisted(curve, *self.angle(chi))
+
+    def twist_at_weld(self, coefficients: FloatArray, chi: FloatArray) -> float:
+        """Return Omega where a rod was welded: at phi = 0."""
+        weld = self.basis.phi[:1]
+        values, slopes, _ = self.basis.waves_at(self.columns, weld)
+        psi = values @ chi + self.link * (weld - pi) - pi / 2
+        curve = self.basis.at(coefficients, weld)
+        _, twisted, speed = _bent_and_twisted(curve, psi, slopes @ chi + self.link)
+        return float(twisted.value[0] / speed.value[0])
 
     def tail(self, chi: FloatArray) -> float:
         """Return the largest k |c_k| in the last tenth of harmonics, of the largest or 1.
 
         The error that truncation leaves in the frame's turning, roughly.
         """
-        sizes = self.wavenumbers * np.abs(chi)
-        high = sizes[self.wavenumbers > 0.9 * self.basis.harmonics]
-        return float(high.max(initial=0.0) / max(sizes.max(initial=0.0), 1.0))
+        high, every = self.basis.sizes(self.columns, chi)
+        return high / max(every, 1.0)
 
     def embed(self, other: Frames, chi: FloatArray) -> FloatArray:
         """Return the coefficients here of another frame's, harmonic by harmonic."""
@@ -106,17 +112,14 @@ class Frames:
         """Return the coefficients (m,) of the frame that is twisted evenly along a loop."""
         _, twisted, speed = self.bent_and_twisted(curve, np.zeros(len(self.columns)))
         mean = twisted.value.mean() / speed.value.mean()
-        _, slopes = self._values
-        sizes = (slopes**2).sum(axis=0)
-        share = slopes.T @ (mean * speed.value - twisted.value)
-        even: FloatArray = np.divide(
-            share, sizes, out=np.zeros_like(share), where=sizes > 0
-        )
+        lacking = mean * speed.value - twisted.value
+        even: FloatArray = np.linalg.lstsq(self._values[1], lacking, rcond=1e-12)[0]
         return even
 
     def transfer(self, other: Frames, chi: FloatArray) -> FloatArray:
         """Return the coefficients here of another frame's, theta kept."""
-        values, _, _ = waves(other.columns, self.basis.phi_of(other.basis))
+        there = self.basis.phi_of(other.basis)
+        values, _, _ = other.basis.waves_at(other.columns, there)
         return self.project(values @ chi)
 
     def turned(self, curve: Curve, axis: FloatArray) -> FloatArray:
@@ -133,6 +136,22 @@ class Frames:
 
     def project(self, angles: FloatArray) -> FloatArray:
         """Return the coefficients (m, ...) of angles (n, ...) at the grid."""
-        values, _ = self._values
-        found: FloatArray = (values / (values**2).sum(axis=0)).T @ angles
+        found: FloatArray = self._projector @ angles
         return found
+
+
+def _bent_and_twisted(curve: Curve, psi: FloatArray, rate: FloatArray) -> tuple[Jet, Jet, Jet]:
+    """Return k_1 ds, Omega ds and ds over the variable that x', x'' and psi' are by."""
+    given = np.column_stack([curve.x1, curve.x2, psi, rate])
+    px, py, pz, qx, qy, qz, angle, turning = variables(given)
+    p, q = [px, py, pz], [qx, qy, qz]
+    u = dot(p, p)
+    speed = u.power(0.5)
+    # s^2 u, and t'.z and t'.(t x z) times u / speed.
+    flat = px * px + py * py
+    upwards = qz - dot(p, q) * pz / u
+    sideways = (qx * py - qy * px) / u
+    bent = angle.cos() * upwards + angle.sin() * sideways * speed
+    bent = bent / flat.power(0.5)
+    twisted = turning - pz * sideways * speed / flat
+    return bent, twisted, speed

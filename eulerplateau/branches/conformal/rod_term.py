@@ -36,17 +36,18 @@ class SmoothRod(Term):
 
     @property
     def link(self) -> float:
-        """Lk: the rod was not turned."""
-        return 0.0
+        """Lk, in turns."""
+        return self.frames.link
 
     def writhe(self, x: FloatArray) -> float:
-        """Return Wr: of a rod that was not turned its twist, in turns, with a minus."""
-        return -float(self._parts(x)[1].value.mean())
+        """Return Wr: the link less the twist, in turns."""
+        return self.link - float(self._parts(x)[1].value.mean())
 
     def moment(self, x: FloatArray) -> float:
         """Return the twisting moment C Omega at phi = 0, where the rod was welded."""
-        _, twisted, speed = self._parts(x)
-        return 2 * self.ratio * float(twisted.value[0] / speed.value[0])
+        coefficients = self.unknowns.loop(x).coefficients
+        chi = self.unknowns.others(x)
+        return 2 * self.ratio * self.frames.twist_at_weld(coefficients, chi)
 
     def twist_energy(self, x: FloatArray) -> float:
         """Return the part of R that is due to twist."""

@@ -3,7 +3,6 @@ from .basis import (
     Curve as Curve,
     finer_bases as finer_bases,
     make_basis as make_basis,
-    waves as waves,
 )
 from .branch import (
     BETTER as BETTER,
@@ -38,6 +37,7 @@ from .equilibrium import (
 from .families import (
     GENERAL as GENERAL,
     HALF_TURNS as HALF_TURNS,
+    LOBED as LOBED,
     PLANAR as PLANAR,
     TWISTED as TWISTED,
     Family as Family,
@@ -45,7 +45,8 @@ from .families import (
 from .gauge import (
     gauge_fields as gauge_fields,
     gauge_modes as gauge_modes,
-    slides as slides,
+    independent as independent,
+    kept_fields as kept_fields,
 )
 from .geometry import (
     Edge as Edge,
@@ -85,3 +86,4 @@ from .writhe import (
     writhe_gradient as writhe_gradient,
     writhe_hessian as writhe_hessian,
 )
+from .welded import WeldedBasis as WeldedBasis, welded_basis as welded_basis

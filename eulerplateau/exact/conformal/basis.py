@@ -13,12 +13,14 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.conformal.families import HALF_TURNS, TWISTED, Family
-from eulerplateau.exact.conformal.grading import Grading
+from eulerplateau.exact.conformal.grading import Grading, dirichlet_form
 
 # The bending's integrand is no trigonometric polynomial: points per harmonic.
 _POINTS = 4
 # Share of the harmonics, at the high end, whose size measures the error of truncation.
-_TAIL = 0.1
+LAST = 0.1
+Columns = tuple[tuple[str, int], ...]  # ("cos" or "sin", k) of each
+Waves = tuple[FloatArray, FloatArray, FloatArray]  # (n, columns): values, two derivatives
 # How far a basis is refined.
 MOST_HARMONICS = 288
 _MOST_CROWDED = 1e-12
@@ -65,13 +67,18 @@ class Basis:
         return 2 * pi * np.arange(n) / n
 
     @cached_property
+    def spacing(self) -> FloatArray:
+        """How far points of the grid are apart in phi (n,), over the mean."""
+        return np.ones(len(self.phi))
+
+    @cached_property
     def theta(self) -> FloatArray:
         """The conformal angle (n,) at the points of the grid."""
         return self.grading.theta(self.phi)
 
     @cached_property
     def rate(self) -> FloatArray:
-        """Its derivative (n,) by phi."""
+        """Its derivative (n,) by the grid's variable, which is phi."""
         return self.grading.rate(self.phi)
 
     @property
@@ -105,7 +112,7 @@ class Basis:
         return weights
 
     @cached_property
-    def columns(self) -> tuple[tuple[tuple[str, int], ...], ...]:
+    def columns(self) -> tuple[Columns, ...]:
         """For each coordinate its ("cos" or "sin", k)."""
         return tuple(
             tuple(
@@ -131,12 +138,20 @@ class Basis:
     @cached_property
     def wavenumbers(self) -> FloatArray:
         """The k of every coefficient (size,)."""
-        return np.array([k for part in self.columns for _, k in part], dtype=np.float64)
+        return np.concatenate([self.waves_in(part) for part in self.columns])
+
+    def waves_in(self, columns: Columns) -> FloatArray:
+        """Return the k of columns."""
+        return np.array([k for _, k in columns], dtype=np.float64)
+
+    def completed(self, columns: Columns) -> Columns:
+        """Return harmonics with what else the basis has of their kinds: nothing."""
+        return columns
 
     @cached_property
-    def matrices(self) -> tuple[tuple[FloatArray, FloatArray, FloatArray], ...]:
+    def matrices(self) -> tuple[Waves, ...]:
         """For each coordinate the values of its columns and of their two derivatives."""
-        return tuple(waves(part, self.phi) for part in self.columns)
+        return tuple(self.waves(part) for part in self.columns)
 
     @cached_property
     def stacked(self) -> FloatArray:
@@ -189,7 +204,7 @@ class Basis:
     def at(self, coefficients: FloatArray, phi: FloatArray) -> Curve:
         """Return the loop at any phi (n,)."""
         parts = [
-            [values @ coefficients[part] for values in waves(columns, phi)]
+            [values @ coefficients[part] for values in self.waves_at(columns, phi)]
             for columns, part in zip(self.columns, self.slices, strict=True)
         ]
         x, x1, x2 = (np.stack(order, axis=-1) for order in zip(*parts, strict=True))
@@ -203,6 +218,11 @@ class Basis:
         scale = 2 / len(self.phi)
         columns = zip(self.matrices, range(3), strict=True)
         return np.concatenate([scale * (m[0].T @ x[:, axis]) for m, axis in columns])
+
+    def projector(self, values: FloatArray) -> FloatArray:
+        """Return what takes values (n,) to coefficients of columns (n, m): (m, n)."""
+        taken: FloatArray = (values / (values**2).sum(axis=0)).T
+        return taken
 
     def transfer(self, other: Basis, coefficients: FloatArray) -> FloatArray:
         """Return the coefficients here of a loop of another basis, theta kept."""
@@ -229,9 +249,46 @@ class Basis:
 
         The relative error that truncation leaves in the loop's tangent, roughly.
         """
-        sizes = self.wavenumbers * np.abs(coefficients)
-        high = self.wavenumbers > (1 - _TAIL) * self.harmonics
-        return float(sizes[high].max() / sizes.max())
+        parts = zip(self.columns, self.slices, strict=True)
+        sizes = [self.sizes(columns, coefficients[part]) for columns, part in parts]
+        high, every = np.max(sizes, axis=0)
+        return float(high / every)
+
+    def sizes(self, columns: Columns, coefficients: FloatArray) -> tuple[float, float]:
+        """Return the largest k |c_k| in the last tenth of the harmonics, and of all."""
+        k = self.waves_in(columns)
+        sizes = k * np.abs(coefficients)
+        high = sizes[k > (1 - LAST) * self.harmonics]
+        return float(high.max(initial=0.0)), float(sizes.max(initial=0.0))
+
+    def waves(self, columns: Columns) -> Waves:
+        """Return columns and their two derivatives at the points of the grid."""
+        return self.waves_at(columns, self.phi)
+
+    def waves_at(self, columns: Columns, phi: FloatArray) -> Waves:
+        """Return columns and their two derivatives by phi at any phi (n,)."""
+        return waves(columns, phi)
+
+    def outwards(self, coefficients: FloatArray) -> FloatArray:
+        """Return how a loop's film goes on across its edge, dX/dr (n, 3) on the disk."""
+        form = dirichlet_form(self.grading, len(self.phi))
+        pull: FloatArray = form @ self.curve(coefficients).x
+        return pull / (self.weight * self.rate[:, None])
+
+    @cached_property
+    def slides(self) -> FloatArray:
+        """By how much theta changes in the conformal maps: (3, n), 1, cos and sin."""
+        theta = self.theta
+        return np.stack([np.ones(len(theta)), np.cos(theta), np.sin(theta)])
+
+    def refinements(self) -> tuple[tuple[int, float], ...]:
+        """Return harmonics, and by how much gradings are sharper: first what costs nothing."""
+        more = 8 * round(self.harmonics / 6)
+        return (self.harmonics, 3), (self.harmonics, 10), (more, 1), (more, 4)
+
+    def like(self, harmonics: int, family: Family, crowding: float) -> Basis:
+        """Return the basis of its kind with other harmonics, symmetry or crowding."""
+        return make_basis(harmonics, family, crowding)
 
 
 @lru_cache(maxsize=24)
@@ -245,25 +302,14 @@ def make_basis(harmonics: int, family: Family, crowding: float = 1.0) -> Basis:
 
 
 def finer_bases(basis: Basis, most_harmonics: int = MOST_HARMONICS) -> Iterator[Basis]:
-    """Yield bases that may resolve a film better: sharper gradings, more harmonics, both.
-
-    Sharper ones first, because they cost nothing.
-    """
-    more = 8 * round(basis.harmonics / 6)
-    for harmonics, sharper in (
-        (basis.harmonics, 3),
-        (basis.harmonics, 10),
-        (more, 1),
-        (more, 4),
-    ):
+    """Yield bases that may resolve a film better: sharper gradings, more harmonics, both."""
+    for harmonics, sharper in basis.refinements():
         crowding = basis.crowding / sharper
         if harmonics <= most_harmonics and crowding >= _MOST_CROWDED:
-            yield make_basis(harmonics, basis.family, crowding)
+            yield basis.like(harmonics, basis.family, crowding)
 
 
-def waves(
-    columns: tuple[tuple[str, int], ...], phi: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def waves(columns: Columns, phi: FloatArray) -> Waves:
     """Return the columns' values and first two derivatives, each (n, columns)."""
     k = np.array([k for _, k in columns], dtype=np.float64)
     # sin = cos shifted by a quarter turn.

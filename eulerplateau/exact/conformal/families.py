@@ -30,6 +30,11 @@ def _family(name: str, x: str, y: str, z: str) -> Family:
 # about x, phi -> -phi; about z, phi -> phi + pi; about y, phi -> pi - phi.
 PLANAR = _family("planar", "cos 1", "sin 1", "")
 TWISTED = _family("all half-turns", "cos 1", "sin 1", "sin 0")
+# The half-turn about x alone, of loops.
+LOBED = Family(
+    "half-turn about x",
+    ((("cos", 0), ("cos", 1)), (("sin", 0), ("sin", 1)), (("sin", 0), ("sin", 1))),
+)
 # Displacements that keep one of the half-turns and break the others.
 ABOUT_X = _family("half-turn about x", "cos 0", "sin 0", "sin 1")
 ABOUT_Y = _family("half-turn about y", "sin 0", "cos 0", "cos 1")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.exact.conformal.basis import Basis, Curve
 
 # Relative singular value below which motions that change nothing coincide.
@@ -12,17 +12,11 @@ _SAME = 1e-6
 
 
 def gauge_fields(basis: Basis, curve: Curve) -> FloatArray:
-    """Return the displacements (n, 3, 6) of three rotations and three conformal maps."""
+    """Return the displacements (n, 3, m) of three rotations and the conformal maps."""
     x_theta = curve.x1 / basis.rate[:, None]
     turned = np.cross(np.eye(3)[:, None], curve.x)
-    slid = slides(basis)[:, :, None] * x_theta
+    slid = basis.slides[:, :, None] * x_theta
     return np.concatenate([turned, slid]).transpose(1, 2, 0)
-
-
-def slides(basis: Basis) -> FloatArray:
-    """Return by how much theta changes in the conformal maps: (3, n), 1, cos and sin."""
-    theta = basis.theta
-    return np.stack([np.ones(len(theta)), np.cos(theta), np.sin(theta)])
 
 
 def gauge_modes(basis: Basis, curve: Curve) -> FloatArray:
@@ -36,10 +30,23 @@ def gauge_modes(basis: Basis, curve: Curve) -> FloatArray:
         return np.zeros((basis.size, 0))
     fields = gauge_fields(basis, curve)
     inside = basis.project(fields)
-    whole = (2 / len(basis.phi)) * np.square(fields - fields.mean(axis=0)).sum(axis=(0, 1))
-    sizes = np.square(inside).sum(axis=0)
-    found = (inside / np.sqrt(sizes + 1e-300))[:, sizes > 0.5 * whole]
-    if not found.size:
-        return np.zeros((basis.size, 0))
-    directions, sizes, _ = np.linalg.svd(found, full_matrices=False)
+    kept = kept_fields(basis, fields, inside)
+    return independent(inside[:, kept])
+
+
+def kept_fields(basis: Basis, fields: FloatArray, inside: FloatArray) -> BoolArray:
+    """Return which of fields (n, 3, m) have the symmetry: their coefficients say so."""
+    share = basis.spacing[:, None, None] / len(basis.phi)
+    off = fields - (share * fields).sum(axis=0)
+    whole = 2 * (share * off**2).sum(axis=(0, 1))
+    kept: BoolArray = np.square(inside).sum(axis=0) > 0.5 * whole
+    return kept
+
+
+def independent(motions: FloatArray) -> FloatArray:
+    """Return orthonormal motions (size, l) that span those given (size, m)."""
+    if not motions.size:
+        return np.zeros((len(motions), 0))
+    sizes = np.sqrt(np.square(motions).sum(axis=0) + 1e-300)
+    directions, sizes, _ = np.linalg.svd(motions / sizes, full_matrices=False)
     return directions[:, sizes > _SAME * sizes[0]].astype(np.float64)

@@ -14,7 +14,6 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.conformal.equilibrium import ConformalFilm
-from eulerplateau.exact.conformal.grading import dirichlet_form
 
 _FEWEST, _MOST = 256, 1 << 16
 # The last tenth of the harmonics k |c_k| over the largest, at which a series is complete.
@@ -122,10 +121,9 @@ class Edge:
 
 def edge(film: ConformalFilm) -> Edge:
     """Return the frame and the curvatures of the film's edge."""
-    grading, phi = film.basis.grading, film.basis.phi
     x, x1, x2 = film.curve
-    rate, speed = grading.rate(phi), np.linalg.norm(x1, axis=1)
-    outwards = dirichlet_form(grading, len(phi)) @ x / (film.basis.weight * rate[:, None])
+    rate, speed = film.basis.rate, np.linalg.norm(x1, axis=1)
+    outwards = film.basis.outwards(film.coefficients)
     tangent = x1 / speed[:, None]
     # Conformal: |X_r| = |X_theta| and X_r . X_theta = 0 at r = 1.
     pull = np.linalg.norm(outwards, axis=1)
@@ -147,9 +145,8 @@ def waist(film: ConformalFilm) -> float:
 
     For films of PLANAR and TWISTED whose lobes lie along x: there it is the shortest.
     """
-    x = film.curve.x
-    quarter = len(x) // 4
-    return float(np.linalg.norm(x[quarter] - x[3 * quarter]))
+    x = film.basis.at(film.coefficients, np.array([0.5 * pi, 1.5 * pi])).x
+    return float(np.linalg.norm(x[0] - x[1]))
 
 
 def _derivative(values: FloatArray) -> FloatArray:

@@ -26,16 +26,13 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.conformal.basis import Basis
-from eulerplateau.exact.conformal.families import TWISTED, Family
+from eulerplateau.exact.conformal.families import LOBED, TWISTED, Family
 
 # Points per harmonic on the whole loop, and the fewest on half a lobe.
 _POINTS, _FEWEST_POINTS = 6, 24
 # Part of a start's square size that may lack the symmetry asked for.
 _ASYMMETRY = 1e-8
 
-_COSINES = ("cos", 0), ("cos", 1)
-_SINES = ("sin", 0), ("sin", 1)
-_LOBED = Family("half-turn about x", (_COSINES, _SINES, _SINES))
 Columns = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 
 
@@ -94,7 +91,7 @@ class Sector:
     @property
     def family(self) -> Family:
         """The family of bases that holds these loops."""
-        return _LOBED if self.lobes > 2 else TWISTED
+        return LOBED if self.lobes > 2 else TWISTED
 
     def turned(self, c: FloatArray) -> FloatArray:
         """Return a loop (size,) with two lobes turned by a right angle about z."""

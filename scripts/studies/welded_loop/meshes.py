@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import ceil, pi
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from scripts.studies.common import make_mesh
 
 # The start, an ellipse, fixes which way the lobes lie and nothing else.
 ASPECT = 2.0
+# By how many steps a rod is turned once: by longer ones strands meet on the way.
+_STEPS_A_TURN = 12
 
 
 def ellipse(loop_edges: int) -> Disk:
@@ -62,7 +64,7 @@ def twisted_film(mesh: Disk, load: float, twist_ratio: float, link: float) -> Eq
     """Return the film on a mesh that follows the flat one as the rod is turned."""
     problem = Problem(mesh, "area", twist_ratio=twist_ratio)
     flat = solve(Problem(mesh, "area", in_plane=True), load)
-    links = np.linspace(0.0, link, 6)[1:]
+    links = np.linspace(0.0, link, ceil(_STEPS_A_TURN * link) + 1)[1:]
     *_, last = sweep(problem, None, flat.shape, parameter="link", values=links, load=load)
     return last
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.exact.conformal import BUCKLING
-from eulerplateau.solvers import Problem, solve
+from eulerplateau.solvers import Problem, Status, solve
 from eulerplateau.solvers.start import smooth_kick
 from eulerplateau.threads import one_thread
 from scripts.studies.welded_loop.answers import disk_link
@@ -18,6 +18,8 @@ from scripts.studies.welded_loop.meshes import ellipse
 STARTS = 200
 # Loop edges; a film is resolved whose waist is above three of them.
 EDGES = 72
+# Those that pinch where a stable film is known begin again on finer meshes.
+FINER = (96, 144)
 _WIDE = 3 / EDGES
 # Times a kick of 1e-3 L, the largest: starts are up to a tenth of L out of their plane.
 _KICKS = 100.0
@@ -57,9 +59,9 @@ def cases() -> list[Case]:
     ]
 
 
-def run(case: Case) -> End:
-    """Solve one case."""
-    mesh = ellipse(EDGES)
+def run(case: Case, edges: int = EDGES) -> End:
+    """Solve one case, on a mesh of so many loop edges."""
+    mesh = ellipse(edges)
     problem = Problem(mesh, "area", twist_ratio=case.twist_ratio, link=case.link)
     with one_thread():
         rng = np.random.default_rng(case.seed)
@@ -74,6 +76,31 @@ def expected(case: Case, curves: dict[float, list[Row]]) -> bool:
     if case.load < BUCKLING and link < disk_link(case.load, case.twist_ratio):
         return True
     return widest_at(curves[case.load], case.twist_ratio, link) > _WIDE
+
+
+def again(ends: list[End], curves: dict[float, list[Row]]) -> list[tuple[str, ...]]:
+    """Return where those end on finer meshes that pinched beside a known stable film."""
+    head = ("status", "load", "C/B", "Lk", "loop edges", "unstable modes")
+    pinched = [
+        end.case
+        for end in ends
+        if end.status == Status.PINCHED.value and expected(end.case, curves)
+    ]
+    rows = [(case, edges, run(case, edges)) for case in pinched for edges in FINER]
+    return [
+        head,
+        *(
+            (
+                end.status,
+                f"{case.load:g}",
+                f"{case.twist_ratio:.4f}",
+                f"{case.link:.4f}",
+                str(edges),
+                str(end.index),
+            )
+            for case, edges, end in rows
+        ),
+    ]
 
 
 def tabulated(ends: list[End], curves: dict[float, list[Row]]) -> list[tuple[str, ...]]:

@@ -26,6 +26,7 @@ from eulerplateau.branches.point import (
 
 _EASY = 4  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
+_RECENTRINGS = 4  # how often a film is made anew at a point, until its forces balance
 _LEAST_LEAP = 1e-4  # arclength below which a leap is none, but a branch that turns
 
 
@@ -168,10 +169,20 @@ def _kept(point: BranchPoint, after: BranchPoint, control: StepControl) -> Direc
 
 
 def recentred(point: BranchPoint, control: StepControl) -> BranchPoint:
-    """Return the point in a family made anew at its loop, if the film has turned."""
-    if point.energy.holds(point.x):
-        return point
-    return _anew(point, point.family.near(point.x), control)
+    """Return the point in a family made anew at its loop, if the film has turned.
+
+    A film that has left its plane on the way is released; one that cannot be is made anew
+    until its forces balance.
+    """
+    if not point.energy.holds(point.x):
+        point = _anew(point, point.family.near(point.x), control)
+    if not point.family.rests(point):
+        point = released(point, control)
+    for _ in range(_RECENTRINGS):
+        if point.family.rests(point):
+            break
+        point = _anew(point, point.family.near(point.x), control)
+    return point
 
 
 def released(point: BranchPoint, control: StepControl) -> BranchPoint:

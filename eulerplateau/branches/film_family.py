@@ -16,7 +16,7 @@ from eulerplateau.branches.point import BranchPoint
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers import Equilibrium, Problem, Status
+from eulerplateau.solvers import RESIDUAL_TOLERANCE, Equilibrium, Problem, Status
 
 if TYPE_CHECKING:
     from eulerplateau.branches.contact import Contact
@@ -97,6 +97,13 @@ class FilmFamily:
         """Return the film made anew at a loop (n_b, 3), and what touches there."""
         return self.on(self.film.renewed(x), self.contact.near(x))
 
+    def rests(self, point: BranchPoint) -> bool:
+        """Return whether forces balance along the film's normals there.
+
+        They do along those of the shape that the film was made near, until it has turned.
+        """
+        return self._recorded(point).converged
+
     def released(self, x: FloatArray) -> FilmFamily:
         """Return the film as a minimal surface, where it is curved."""
         return self.on(self.film.released(x))
@@ -118,14 +125,20 @@ class FilmFamily:
 
     def equilibrium(self, point: BranchPoint) -> Equilibrium:
         """Return the equilibrium at a point of a branch of it."""
+        problem, _ = self.at(point.value)
+        found = problem.classified(self._recorded(point))
+        return replace(found, iterations=point.corrections, stability=point.stability)
+
+    def _recorded(self, point: BranchPoint) -> Equilibrium:
         (problem, load), x = self.at(point.value), point.x
         energy = self.film.energy(problem.loop, load)
         contacts = self.contact.contacts(point, problem.loop, self.film, energy)
         shape, tensions = self.film.shape(x), point.model.tensions[: len(x)]
         pushes = None if contacts is None else contacts.pushes
         found = problem.equilibrium(shape, tensions, load, Status.CONVERGED, pushes)
-        found = problem.classified(replace(found, contacts=contacts))
-        return replace(found, iterations=point.corrections, stability=point.stability)
+        balanced = found.residual <= RESIDUAL_TOLERANCE
+        status = Status.CONVERGED if balanced else Status.STALLED
+        return replace(found, status=status, contacts=contacts)
 
     def on(
         self, film: FilmOfLoop, contact: NoContact | Contact | None = None

@@ -83,6 +83,10 @@ class CellFamily:
         """Return the family good where edges are as short as those of a loop (n, 2)."""
         return replace(self, edge=shortest_edge(x))
 
+    def rests(self, point: BranchPoint) -> bool:
+        """Return True: nothing of a film in the plane turns."""
+        return True
+
     def released(self, x: FloatArray) -> CellFamily:
         """Return the family itself: a film in the plane has nothing to release."""
         return self

@@ -11,6 +11,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import (
+    BranchPoint,
     DiagramPoint,
     Family,
     FilmFamily,
@@ -106,6 +107,9 @@ class FamilyInColumn:
 
     def near(self, y: FloatArray) -> Family:
         return self
+
+    def rests(self, point: BranchPoint) -> bool:
+        return True
 
     def released(self, y: FloatArray) -> Family:
         return self

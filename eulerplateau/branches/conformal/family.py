@@ -105,6 +105,10 @@ class SmoothFamily:
         """Return itself: harmonics are good near every loop."""
         return self
 
+    def rests(self, point: BranchPoint) -> bool:
+        """Return True."""
+        return True
+
     def released(self, x: FloatArray) -> SmoothFamily:
         """Return itself: the film is a minimal surface."""
         return self

@@ -197,7 +197,9 @@ class WeldedBasis(Basis):
             slope = self.matrices[axis][0] * (self.wavenumbers * self._depths)[part]
             for place, (kind, j) in enumerate(columns):
                 if kind not in _TAILS:
-                    slope[:, place] = tails[:, j].imag if kind[0] == "c" else -tails[:, j].real
+                    slope[:, place] = (
+                        tails[:, j].imag if kind[0] == "c" else -tails[:, j].real
+                    )
             found[:, axis] = slope @ coefficients[part]
         return found / self.grading.rate(self.phi)[:, None]
 

@@ -95,8 +95,8 @@ def _one_blas_thread() -> Iterator[None]:
 def coarse_pictures() -> Iterator[None]:
     """Figures have fewer pixels from now on, and a text is parsed once for all of them.
 
-    By itself matplotlib remembers 50 texts, which are those of two or three figures, and
-    at one resolution: here it is that of PDF and SVG for all.
+    By itself matplotlib remembers 50 texts, of one figure's PNG or of PDFs and SVGs, and at
+    one resolution: here it is that of PDF and SVG for all.
     """
     from matplotlib import rc_context
     from matplotlib.mathtext import MathTextParser
@@ -104,10 +104,17 @@ def coarse_pictures() -> Iterator[None]:
     from eulerplateau.pictures import figure
 
     dpi = 72
-    parsed = lru_cache(None)(MathTextParser._parse_cached.__wrapped__)
+    parse = MathTextParser._parse_cached.__wrapped__
+    parsed = lru_cache(None)(lambda kind, *text: parse(MathTextParser(kind), *text))
+    # Of what a parser parses nothing depends on but its kind of output.
+    kinds = {"vector": "path", "raster": "agg"}
+
+    def parse_once(parser: Any, *text: Any) -> Any:
+        return parsed(kinds[parser._output_type], *text)
+
     with pytest.MonkeyPatch.context() as patch, rc_context({"figure.dpi": dpi}):
         patch.setattr(figure, "_DPI", dpi)
-        patch.setattr(MathTextParser, "_parse_cached", parsed)
+        patch.setattr(MathTextParser, "_parse_cached", parse_once)
         yield
 
 

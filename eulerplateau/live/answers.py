@@ -7,11 +7,10 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape
-from eulerplateau.mesh.drawing import EYE, LOOP_RADIUS, mean_normal, settled
+from eulerplateau.mesh.drawing import EYE, LOOP_RADIUS, mean_normal, settled, turn_onto
 from eulerplateau.pictures.gallery import base64_of, cell_of, film_colours
 from eulerplateau.runs import Varied, Visited
 
@@ -39,7 +38,7 @@ class Stage:
         x, turn = self._placed(point.shape)
         marks = None
         if point.directors is not None:
-            marks = base64_of(np.rint(_INT8 * turn.apply(point.directors)).astype("i1"))
+            marks = base64_of(np.rint(_INT8 * (point.directors @ turn)).astype("i1"))
         return {
             "x": base64_of(np.rint(x / _UNIT).astype("<i2")),
             "marks": marks,
@@ -47,15 +46,15 @@ class Stage:
             "radius": LOOP_RADIUS if point.radius is None else point.radius,
         }
 
-    def _placed(self, shape: Shape) -> tuple[FloatArray, Rotation]:
-        """Return positions (n_v, 3), and what turned them."""
+    def _placed(self, shape: Shape) -> tuple[FloatArray, FloatArray]:
+        """Return positions (n_v, 3), and the rotation (3, 3) that turned them."""
         here = shape.x - shape.x.mean(axis=0)
         if not np.isfinite(here).all():
-            return np.zeros_like(here), Rotation.identity()
+            return np.zeros_like(here), np.eye(3)
         if self._last is None:
             self._last = settled(shape.x[None], [None], shape.loop)[0]
-        turn, _ = Rotation.align_vectors(self._last, here)
-        self._last = turn.apply(here)
+        turn = turn_onto(self._last, here)
+        self._last = here @ turn
         return self._last, turn
 
 

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 
@@ -57,6 +55,9 @@ def layers(before: IntArray, depth: FloatArray) -> IntArray:
     depth : (n,) float, greater nearer to the eye: decides among things that would have to
         be painted each before the next, in a ring
     """
+    from scipy.sparse import coo_array  # slow to load, and only films need it
+    from scipy.sparse.csgraph import connected_components
+
     n = len(depth)
     graph = coo_array((np.ones(len(before)), (before[:, 0], before[:, 1])), shape=(n, n))
     _, ring = connected_components(graph, connection="strong")

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh import Shape
@@ -131,6 +130,8 @@ def _rim(shape: Shape, parents: IntArray) -> IntArray:
 
 def _inside(corners: FloatArray, ends: FloatArray, radius: float) -> IntArray:
     """Return pairs (m, 2) of a part of the film and a stretch of wire it reaches into."""
+    from scipy.spatial import cKDTree  # slow to load, and only films need it
+
     points, middles = cKDTree(corners.reshape(-1, 3)), cKDTree(ends.mean(axis=1))
     near = points.sparse_distance_matrix(middles, radius, output_type="ndarray")
     pairs = np.stack([near["i"] // 3, near["j"]], axis=1).astype(np.int64)

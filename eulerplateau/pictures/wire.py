@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from scipy.spatial.transform import Rotation
-
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Shape, read_vtp
-from eulerplateau.mesh.drawing import LOOP_RADIUS
+from eulerplateau.mesh.drawing import LOOP_RADIUS, turn_onto
 
 
 @dataclass(frozen=True)
@@ -40,5 +37,5 @@ def read_wire(path: Path, shape: Shape) -> Wire:
     if directors is None:
         return Wire(radius, None)
     there, here = stored.points[shape.loop], shape.x_loop
-    turn, _ = Rotation.align_vectors(here - here.mean(axis=0), there - there.mean(axis=0))
-    return Wire(radius, np.asarray(turn.apply(directors[shape.loop])))
+    turn = turn_onto(here - here.mean(axis=0), there - there.mean(axis=0))
+    return Wire(radius, directors[shape.loop] @ turn)

@@ -1,4 +1,9 @@
-from .alignment import EYE as EYE, aligned as aligned, settled as settled
+from .alignment import (
+    EYE as EYE,
+    aligned as aligned,
+    settled as settled,
+    turn_onto as turn_onto,
+)
 from .child import draw_in_child as draw_in_child
 from .film import (
     BACK as BACK,

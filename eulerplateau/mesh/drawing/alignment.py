@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.mesh.shape import Shape
@@ -45,10 +44,9 @@ def settled(x: FloatArray, before: Sequence[int | None], loop: IntArray) -> Floa
     """Return shapes `x` (n, n_v, 3) free of rigid motions, each close to its predecessor.
 
     `before` numbers the predecessor of each shape, an earlier one, or None. A shape is
-    centred and turned to the least distance from its predecessor, summed over the
-    vertices' squares (Kabsch 1976), never mirrored. Then all are turned alike: the
-    longest of the principal axes of all of them together along x, the shortest along z,
-    the front of the first film towards the viewer.
+    centred and turned onto its predecessor, as near as it comes. Then all are turned
+    alike: the longest of the principal axes of all of them together along x, the shortest
+    along z, the front of the first film towards the viewer.
 
     That follows a film wherever it turns, but lets the flat eight stand upright: the two
     halves of the film it comes from turn by a quarter each, in opposite senses. Where one
@@ -58,14 +56,25 @@ def settled(x: FloatArray, before: Sequence[int | None], loop: IntArray) -> Floa
     moved = x - x.mean(axis=1, keepdims=True)
     for place, last in enumerate(before):
         if last is not None:
-            turn = Rotation.align_vectors(moved[last], moved[place])[0]
-            moved[place] = turn.apply(moved[place])
+            moved[place] = moved[place] @ turn_onto(moved[last], moved[place])
     axes = np.linalg.eigh(np.einsum("sva,svb->ab", moved, moved))[1][:, ::-1]
     axes = _right_handed(axes)
     front = _area_vector(moved[0, loop]) @ axes
     signs = _HALF_TURNS[np.argmax(_HALF_TURNS @ (front * EYE))]
     turned: FloatArray = moved @ (axes * signs)
     return turned
+
+
+def turn_onto(there: FloatArray, here: FloatArray) -> FloatArray:
+    """Return the rotation R (3, 3), no mirror, that turns `here` onto `there` (n, 3) each.
+
+    Of the distances between `here @ R` and `there` the squares' sum is the least (Kabsch
+    1976). SciPy's takes longer to load than a picture to draw.
+    """
+    left, _, right = np.linalg.svd(here.T @ there)
+    left[:, 2] *= np.sign(np.linalg.det(left @ right))
+    turn: FloatArray = left @ right
+    return turn
 
 
 def _right_handed(axes: FloatArray) -> FloatArray:

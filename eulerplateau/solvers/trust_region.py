@@ -8,6 +8,8 @@ from eulerplateau.arrays import FloatArray
 
 # The radius that a descent begins with.
 FIRST_RADIUS = 0.05
+# As long as the radius is a step that exceeds it by no more than this part of it.
+_ROUNDING = 1e-12
 
 
 def trust_region_step(
@@ -37,16 +39,15 @@ def trust_region_step(
         rest = np.sqrt(max(radius**2 - float(step @ step), 0.0))
         step[0] = -rest if g[0] > 0 else rest
         return step
-    # Slow to load, and asked for only where a step is cut short.
-    from scipy.optimize import brentq
-
-    # Nearly linear in the gap, unlike the length itself.
-    gap = brentq(
-        lambda gap: 1 / radius - 1 / length(gap),
-        least,
-        float(np.linalg.norm(g)) / radius + least,
-        xtol=least * 1e-10,
-        rtol=1e-12,
-    )
-    bounded: FloatArray = -g / (lifted + gap)
-    return bounded
+    # No part of the step is longer than the radius: a least gap, and no more than the gap.
+    gap = max(least, float((np.abs(g) / radius - lifted).max()))
+    while True:
+        bounded: FloatArray = -g / (lifted + gap)
+        excess = float(np.linalg.norm(bounded)) / radius - 1
+        # By Newton's method for 1 / |p|, concave and nearly linear in the gap, unlike |p|:
+        # the gap rises and never too far (Conn, Gould and Toint 2000, section 7.3.3).
+        slope = float(bounded @ (bounded / (lifted + gap)))
+        further = gap + excess * float(bounded @ bounded) / slope
+        if excess <= _ROUNDING or further == gap:
+            return bounded
+        gap = further

@@ -6,7 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
+from eulerplateau.mesh.readers import __main__ as child, gmsh_files
 from tests.helpers.shapes import hexagon_points
 
 _PLANE, TRIANGLES = hexagon_points(3)
@@ -185,6 +187,17 @@ def write_xml(path: Path, mode: str, compressor: str, big_endian: bool = False) 
     else:
         writer.SetDataModeToAscii() if mode == "text" else writer.SetDataModeToBinary()
     writer.Write()
+
+
+def let_gmsh_read_here(patch: pytest.MonkeyPatch) -> None:
+    """Read .msh files in this process: of a whole file a child makes no other disk."""
+
+    def read(_: str, path: str, target: str, *, timeout: float) -> str:
+        child._read(Path(path), Path(target))
+        return ""
+
+    patch.setattr(child, "_limit_memory", lambda path: None)
+    patch.setattr(gmsh_files, "failure_of_child", read)
 
 
 def write_msh(

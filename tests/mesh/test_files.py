@@ -14,6 +14,7 @@ from eulerplateau.errors import MeshError, OutputError, SpecError
 from eulerplateau.mesh import read_disk, read_mesh, write_mesh
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.files import read_triangles
+from tests.helpers.disk_files import let_gmsh_read_here
 from tests.helpers.shapes import hexagon_points
 
 MESHES = Path(__file__).parents[2] / "meshes"
@@ -34,8 +35,14 @@ def by_position(mesh):
     return mesh.x[np.lexsort(mesh.x.round(5).T)]
 
 
+@pytest.fixture
+def _here(monkeypatch):
+    let_gmsh_read_here(monkeypatch)
+
+
 @pytest.mark.parametrize("unit", [1.0, 1e-9, 1e9])
 @pytest.mark.parametrize("extension", EXACT)
+@pytest.mark.usefixtures("_here")
 def test_a_round_trip_keeps_every_bit(tmp_path, extension, unit):
     mesh = saddle(unit)
     path = tmp_path / f"film{extension}"
@@ -154,6 +161,7 @@ def test_stray_vertices_are_dropped_and_culprits_keep_the_files_numbers(tmp_path
 
 @pytest.mark.parametrize("version", [2.2, 4.1])
 @pytest.mark.parametrize("binary", [0, 1])
+@pytest.mark.usefixtures("_here")
 def test_gmshs_own_files_are_read(tmp_path, version, binary):
     import gmsh
 

@@ -89,10 +89,15 @@ def test_files_of_pyvista_are_the_same_disk(tmp_path, extension, binary):
 
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> Disk:
-    """What Gmsh makes, in the form that is read anyway."""
+    """What Gmsh makes, in the form that is read anyway, by a child as always."""
     path = tmp_path_factory.mktemp("circle") / "plain.msh"
     disk_files.write_msh(path, 4.1, False)
     return read_mesh(path)
+
+
+@pytest.fixture
+def _here(known: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
+    disk_files.let_gmsh_read_here(monkeypatch)
 
 
 # Gmsh writes version 4.0 as text only.
@@ -101,6 +106,7 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> Disk:
     [(2.2, False), (2.2, True), (4.0, False), (4.1, False), (4.1, True)],
 )
 @pytest.mark.parametrize("variant", ["", "parametric", "partitioned", "groups"])
+@pytest.mark.usefixtures("_here")
 def test_gmshs_files_of_any_version_are_the_same_disk(
     tmp_path, known, variant, version, binary
 ):
@@ -112,6 +118,7 @@ def test_gmshs_files_of_any_version_are_the_same_disk(
 
 @pytest.mark.parametrize("order", [2, 3])
 @pytest.mark.parametrize("version", [2.2, 4.1])
+@pytest.mark.usefixtures("_here")
 def test_triangles_of_higher_order_are_taken_by_their_corners(
     tmp_path, caplog, known, version, order
 ):

@@ -19,6 +19,7 @@ from eulerplateau.errors import (
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.pictures.render import chosen_steps
 from eulerplateau.runs import read_run
+from tests.helpers.drawing import let_one_child_draw
 from tests.helpers.shapes import disk_points, mesh_of
 from tests.pictures.test_render import record, twisted
 from tests.runs.test_folder import start
@@ -55,7 +56,10 @@ def test_command_draws_what_was_chosen(run: Path) -> None:
     assert names == {"shape_0001_soap.png", "shape_0003_soap.png", "sheet_soap.png"}
 
 
-def test_pictures_go_where_the_command_is_told(run: Path, tmp_path: Path) -> None:
+def test_pictures_go_where_the_command_is_told(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    let_one_child_draw(monkeypatch)
     there = tmp_path / "new" / "pics"
     assert carried_out(run, "--step", 2, "-o", there) is None
     assert [path.name for path in there.iterdir()] == ["shape_0002.png"]

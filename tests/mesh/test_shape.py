@@ -23,6 +23,7 @@ from eulerplateau.errors import (
 from eulerplateau.mesh import Shape, read_vtp
 from eulerplateau.mesh.drawing import Picture, picture
 from eulerplateau.mesh.files import read_triangles
+from tests.helpers.drawing import let_one_child_draw
 from tests.helpers.shapes import crumpled, disk_points, mesh_of
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -90,6 +91,13 @@ def test_notebook_shows_the_front_of_a_film_and_its_loop(shape: Shape) -> None:
     assert 0.002 < dark.mean() < 0.1
 
 
+@pytest.fixture
+def _one_child(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The test before has a child of its own, as users have."""
+    let_one_child_draw(monkeypatch)
+
+
+@pytest.mark.usefixtures("_one_child")
 def test_plot_without_a_window_returns_a_picture_with_the_options(
     tmp_path: Path, shape: Shape
 ) -> None:
@@ -100,11 +108,13 @@ def test_plot_without_a_window_returns_a_picture_with_the_options(
     assert (tmp_path / "film.png").read_bytes() == red.png == red._repr_png_()
 
 
+@pytest.mark.usefixtures("_one_child")
 def test_options_that_pyvista_does_not_know_are_named(shape: Shape) -> None:
     with pytest.raises(SpecError, match="colourr"):
         shape.plot(window=False, colourr="red")
 
 
+@pytest.mark.usefixtures("_one_child")
 def test_a_film_that_cannot_be_drawn_costs_a_notebook_one_line(
     shape: Shape, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -24,6 +24,7 @@ from eulerplateau.runs.rows import Row
 from eulerplateau.runs.states import distinct_steps
 from eulerplateau.runs.table import RowWriter
 from eulerplateau.solvers.equilibrium import Status
+from tests.helpers.drawing import let_one_child_draw
 from tests.helpers.shapes import disk_points, eight, mesh_of, rotation
 from tests.runs.test_folder import start
 from tests.runs.test_output import ROW
@@ -207,6 +208,12 @@ def test_every_sweep_has_a_diagram(tmp_path: Path, rows: list[Row], case: str) -
     assert read_png(tmp_path / "diagram.png").std() > 0.01
 
 
+@pytest.fixture
+def _one_child(monkeypatch: pytest.MonkeyPatch) -> None:
+    let_one_child_draw(monkeypatch)
+
+
+@pytest.mark.usefixtures("_one_child")
 def test_render_shows_all_of_each_film_and_both_its_sides(
     tmp_path: Path, mesh: Disk
 ) -> None:
@@ -239,6 +246,7 @@ def part_of(mask: NDArray[np.bool_]) -> float:
     return float(mask.mean())
 
 
+@pytest.mark.usefixtures("_one_child")
 def test_missing_shape_is_reported_not_raised(tmp_path: Path, mesh: Disk) -> None:
     record(tmp_path, mesh, [mesh.x])
     assert not draw_shapes(tmp_path, [7])

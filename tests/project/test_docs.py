@@ -17,6 +17,7 @@ from eulerplateau.runs import load_run
 from eulerplateau.runs.ensembles import running
 from eulerplateau.settings import load_toml
 from tests.helpers.command import run_here
+from tests.helpers.drawing import let_one_child_draw
 from tests.helpers.pages import DOCS, EXAMPLES, PAGES, ROOT, blocks
 from tests.helpers.tasks import in_turn
 
@@ -58,6 +59,7 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, coarse_pictures: None
 
     Its runs are short, its diagrams coarse, and the tutorial's files are in it.
     """
+    let_one_child_draw(monkeypatch)
     shutil.copytree(ROOT / "meshes", tmp_path / "meshes")
     (tmp_path / "runs").mkdir()
     for name in ("elongated", "hexagon"):

@@ -11,7 +11,6 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import least_squares
 
 from eulerplateau.arrays import FloatArray
 
@@ -133,6 +132,9 @@ def _fit_window(loads: FloatArray, values: FloatArray, onset: float | None) -> W
         if onset is not None:
             return onset
         return float(loads[0]) - span * float(np.exp(parameters[1]))
+
+    # Slow to load, and whoever draws a run can do without.
+    from scipy.optimize import least_squares
 
     def misfit(parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
         at = onset_at(parameters)

@@ -1,4 +1,8 @@
-"""A triangulated disk: positions, triangles, the loop that bounds it, and its checks."""
+"""A triangulated disk: positions, triangles, the loop that bounds it, and its checks.
+
+SciPy is imported where it is needed, in `triangles` too: it is slow to load, and who only
+reads and draws stored shapes can do without.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +13,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.sparse import coo_array, diags_array
-from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import splu
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
@@ -97,6 +98,9 @@ class Disk:
         each is the mean of its neighbours (Tutte 1963), which leaves no triangle turned
         over if the loop is convex.
         """
+        from scipy.sparse import coo_array, diags_array
+        from scipy.sparse.linalg import splu
+
         n_v = int(triangles.max()) + 1
         start, end = np.unique(directed_edges(triangles), axis=0).T
         between = coo_array((np.ones(len(start)), (start, end)), shape=(n_v, n_v))
@@ -150,6 +154,8 @@ class Disk:
 
         Where in the second array (n,) those of loop vertex v begin (n_b,), and vertices.
         """
+        from scipy.sparse import coo_array
+
         start, end = self.edges.T
         ends = (np.concatenate([start, end]), np.concatenate([end, start]))
         shape = (self.n_v, self.n_v)
@@ -185,6 +191,9 @@ def _check_arrays(points: FloatArray, triangles: IntArray) -> None:
 
 def trace_disk(n_v: int, triangles: IntArray) -> IntArray:
     """Return the loop; raise MeshError unless the triangles form an oriented disk."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     half = directed_edges(triangles)
     key = np.sort(half, axis=1) @ np.array([n_v, 1])
     _, first, side, count = np.unique(

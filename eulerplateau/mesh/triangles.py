@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from eulerplateau.arrays import FloatArray, IntArray
 
@@ -28,6 +26,9 @@ def joints(triangles: IntArray) -> tuple[IntArray, IntArray]:
 
 def pieces(triangles: IntArray) -> int:
     """Return into how many pieces triangles fall that edges of two of them join."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     one, other = joints(triangles)
     shape = (len(triangles), len(triangles))
     joined = coo_array((np.ones(len(one)), (one // 3, other // 3)), shape=shape)

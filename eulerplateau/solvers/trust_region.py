@@ -45,7 +45,7 @@ def trust_region_step(
         bounded: FloatArray = -g / (lifted + gap)
         excess = float(np.linalg.norm(bounded)) / radius - 1
         # By Newton's method for 1 / |p|, concave and nearly linear in the gap, unlike |p|:
-        # the gap rises and never too far (Conn, Gould and Toint 2000, section 7.3.3).
+        # the gap rises and never too far (Nocedal and Wright 2006, section 4.3).
         slope = float(bounded @ (bounded / (lifted + gap)))
         further = gap + excess * float(bounded @ bounded) / slope
         if excess <= _ROUNDING or further == gap:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import atexit
 import json
+import os
 import subprocess
 import sys
 from functools import cache
@@ -12,12 +13,14 @@ import pytest
 
 from eulerplateau.mesh.drawing import child, picture
 
-# Each line it is sent names a module and its arguments; it answers with what failed.
+# Each line it is sent names a folder to be in, a module and its arguments; it answers with
+# what failed.
 _SERVE = """
 import json, os, runpy, sys, traceback
 answers = os.fdopen(os.dup(1), "w")
 for line in sys.stdin:
-    module, *sys.argv[1:] = json.loads(line)
+    folder, module, *sys.argv[1:] = json.loads(line)
+    os.chdir(folder)
     failure = ""
     try:
         runpy.run_module(module, run_name="__main__")
@@ -37,7 +40,7 @@ def _failure(module: str, *arguments: str, timeout: float | None) -> str:
     drawing = _started()
     assert drawing.stdin is not None
     assert drawing.stdout is not None
-    print(json.dumps([module, *arguments]), file=drawing.stdin, flush=True)
+    print(json.dumps([os.getcwd(), module, *arguments]), file=drawing.stdin, flush=True)
     answer = drawing.stdout.readline()
     return str(json.loads(answer)) if answer else f"exit code {drawing.wait()}"
 

@@ -17,7 +17,7 @@ from eulerplateau.film.tiling import Tiling
 
 # How long edges may be over their distance from the nearest place.
 _GROWTH = 0.35
-# How long edges from the loop inwards may be over the loop's own, at the least: across one of
+# How long edges from the loop inwards may be over the loop's own, at the least: on one of
 # those shorter ones make thin triangles.
 _AT_LOOP = 1 / 2
 # By how much an edge is too long where refinement begins, again too: it leaves none that is

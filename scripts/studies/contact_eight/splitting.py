@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 
 from eulerplateau.branches import explore
 from eulerplateau.branches.conformal import splitting_load, thick_eight
 from eulerplateau.solvers import Problem
 from scripts.studies.contact_eight.on_meshes import eight_on, round_disk
 
-# Diameters with loads from which branches are followed upwards, where films without a mesh
-# are known; of the first two that at which contact splits is known without a mesh, too.
+# Diameters, with loads from which branches are followed upwards, where films without a mesh
+# are known, and the loop's edges of two meshes. Of the first two diameters the load where
+# contact splits is known without a mesh, too.
 STARTS = {0.05: 3800.0, 0.02: 4200.0, 0.01: 4200.0}
+MESHES = ((0.05, (60, 120)), (0.02, (60, 120)), (0.01, (60, 120)), (0.01, (120, 180)))
 KNOWN = 0.02
-EDGES = 60, 120
 _HIGHEST = 6000.0
 
 
+@cache
 def on_mesh(diameter: float, edges: int) -> float:
     """Return the load at which contact splits on a mesh of so many loop edges."""
     start = STARTS[diameter]
@@ -31,16 +34,15 @@ def on_mesh(diameter: float, edges: int) -> float:
 
 
 def table() -> Iterator[list[str]]:
-    """Yield a head, then by diameter loads on meshes, their limit, and that without one.
+    """Yield a head, then by diameter loads on two meshes, their limit, and that of none.
 
-    The limit is that of two meshes, an error of second order taken out.
+    The limit is that of the two meshes, an error of second order taken out.
     """
-    heads = [f"{edges} edges" for edges in EDGES]
-    yield ["d", *heads, "limit", "without a mesh"]
-    more = (EDGES[1] / EDGES[0]) ** 2 - 1
-    for diameter in STARTS:
-        coarse, fine = (on_mesh(diameter, edges) for edges in EDGES)
-        limit = fine + (fine - coarse) / more
+    yield ["d", "edges", "coarse", "fine", "limit", "without a mesh"]
+    for diameter, edges in MESHES:
+        coarse, fine = (on_mesh(diameter, each) for each in edges)
+        limit = fine + (fine - coarse) / ((edges[1] / edges[0]) ** 2 - 1)
         exact = splitting_load(diameter) if diameter >= KNOWN else None
         last = "-" if exact is None else f"{exact:.2f}"
-        yield [f"{diameter:g}", *(f"{load:.2f}" for load in (coarse, fine, limit)), last]
+        loads = (f"{load:.2f}" for load in (coarse, fine, limit))
+        yield [f"{diameter:g}", f"{edges[0]}, {edges[1]}", *loads, last]

@@ -19,7 +19,7 @@ from eulerplateau.film.tiling import Tiling
 _GROWTH = 0.35
 # How long edges from the loop inwards may be over the loop's own, at the least: on one of
 # those shorter ones make thin triangles.
-_AT_LOOP = 1 / 2
+_AT_LOOP = 0.4
 # By how much an edge is too long where refinement begins, again too: it leaves none that is
 # too long at all, and as the place moves on along the loop edges slide and stretch.
 _SLACK = 1.3

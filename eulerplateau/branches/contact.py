@@ -100,8 +100,8 @@ def contact_near(
     """Return what is closed at the equilibrium next to x (n, d), and its loop.
 
     The gaps that are given, of those next to each other one, or all but closed at x, less
-    what pulls, and what overlaps besides; x itself where Newton's method comes to nothing. `family` makes the family of
-    a contact, of whose parameter this is the value.
+    what pulls, and what overlaps besides; x itself where Newton's method comes to nothing.
+    `family` makes the family of a contact, of whose parameter this is the value.
     """
     contact = Contact(strands_of(loop))
     near: Gaps | None = gaps

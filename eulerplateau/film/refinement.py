@@ -17,9 +17,12 @@ from eulerplateau.film.tiling import Tiling
 
 # How long edges may be over their distance from the nearest place.
 _GROWTH = 0.35
-# By how much an edge is too long where refinement begins: what that leaves slides and
-# stretches later, and is no reason to begin again.
-_SLACK = 2.0
+# How long edges from the loop inwards may be over the loop's own, at the least: on one of
+# those shorter ones make thin triangles.
+_AT_LOOP = 0.4
+# By how much an edge is too long where refinement begins, again too: it leaves none that is
+# too long at all, and as the place moves on along the loop edges slide and stretch.
+_SLACK = 1.3
 # In one round no triangle is halved twice.
 _ROUNDS = 30
 
@@ -44,10 +47,10 @@ def refined(
     """Return a film (n_v, 3) whose edges inside are as short as they should be.
 
     Vertices are added behind those there are, up to `most` in all; the loop is untouched.
-    The film as it was if no edge is longer by a factor of two.
+    The film as it was if no edge is too long by a third.
     """
     edges = _Edges.of(tiling, x)
-    if not (edges.inside & (edges.lengths > _SLACK * sizes.at(edges.middles))).any():
+    if not (edges.inside & (edges.lengths > _SLACK * edges.allowed(sizes))).any():
         return tiling, x
     for _ in range(_ROUNDS):
         halved = _halved(tiling, x, sizes)
@@ -67,12 +70,19 @@ class _Edges:
     middles : (n_e, 3) float
     lengths : (n_e,) float
     inside : (n_e,) bool, whether they belong to two triangles
+    least : (n_e,) float, how long they may be wherever they are
     """
 
     of_triangles: IntArray
     middles: FloatArray
     lengths: FloatArray
     inside: BoolArray
+    least: FloatArray
+
+    def allowed(self, sizes: EdgeSizes) -> FloatArray:
+        """Return how long edges may be (n_e,)."""
+        allowed: FloatArray = np.maximum(sizes.at(self.middles), self.least)
+        return allowed
 
     @classmethod
     def of(cls, tiling: Tiling, x: FloatArray) -> _Edges:
@@ -83,11 +93,17 @@ class _Edges:
             ends @ (tiling.n_v, 1), return_inverse=True, return_counts=True
         )
         one, other = x[first // tiling.n_v], x[first % tiling.n_v]
+        loop = x[tiling.loop]
+        chords = np.linalg.norm(np.roll(loop, -1, axis=0) - loop, axis=1)
+        on_loop = np.zeros(tiling.n_v, dtype=bool)
+        on_loop[tiling.loop] = True
+        touches = on_loop[first // tiling.n_v] | on_loop[first % tiling.n_v]
         return cls(
             place.reshape(corners.shape),
             0.5 * (one + other),
             np.linalg.norm(one - other, axis=1),
             count == 2,
+            np.where(touches, _AT_LOOP * chords.mean(), 0.0),
         )
 
 
@@ -99,7 +115,7 @@ def _halved(
     Those that are the longest such edge of both their triangles (Rivara 1984).
     """
     edges = _Edges.of(tiling, x)
-    long = edges.inside & (edges.lengths > sizes.at(edges.middles))
+    long = edges.inside & (edges.lengths > edges.allowed(sizes))
     if not long.any():
         return None
     # Ranks, in place of lengths: on a mesh with a symmetry these are equal in pairs.

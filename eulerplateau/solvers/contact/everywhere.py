@@ -87,7 +87,7 @@ class Everywhere:
         return from_one_strand(self.strands.knots, low, state.gaps[~state.gaps.slides])
 
     def _after_step(self, state: Touching, known: Gaps, *, closes: bool) -> Touching | None:
-        """Return the state after a step, which closes gaps and lets go of others if need be.
+        """Return the state after a step; if need be it closes gaps and lets go of others.
 
         known : places where strands have overlapped on the way, and may again
         """

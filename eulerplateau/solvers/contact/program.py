@@ -130,7 +130,7 @@ def least_forces(gram: FloatArray, widths: FloatArray) -> FloatArray:
 def _balanced(
     gram: FloatArray, widths: FloatArray, forces: FloatArray, active: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Return forces that close the active gaps, those let go at which strands would pull."""
+    """Return forces that close the active gaps, and which: those that pull are let go."""
     while active.any():
         wanted = np.zeros_like(forces)
         factor = cho_factor(gram[np.ix_(active, active)])

@@ -182,8 +182,9 @@ def _fit(problem: Problem, found: Equilibrium) -> Shape:
     assert contacts is not None
     assert diameter is not None
     crossings = contacts.points.mean(axis=0)[contacts.at_a_point]
-    if len(crossings):
-        edges = float(problem.loop.rest_lengths.mean())
+    edges = float(problem.loop.rest_lengths.mean())
+    # The mesh of a thicker line is fine enough.
+    if len(crossings) and diameter < edges:
         finest = max(_OF_DIAMETER * diameter, _OF_LOOP * edges)
         return problem.film.refined(shape, crossings, finest)
     parted = len(contacts) == 0 and isinf(contacts.smallest_gap)

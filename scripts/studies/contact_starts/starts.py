@@ -32,9 +32,9 @@ _KICKS = 100.0
 # come near each other, down to this factor.
 _HARMONICS = 3
 _FLATTEST = 0.01
-# By which part of the diameter strands may overlap, as docs/planar.md says; which part of
-# the largest force a contact may pull with; what the energy may rise by from rounding.
-OVERLAP, PULL, RISE = 1e-2, RESIDUAL_TOLERANCE, 1e-9
+# By which part of the diameter strands may overlap; which part of the largest force a
+# contact may pull with; what the energy may rise by from rounding.
+OVERLAP, PULL, RISE = 1e-3, RESIDUAL_TOLERANCE, 1e-9
 
 
 @dataclass(frozen=True)

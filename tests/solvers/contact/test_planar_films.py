@@ -237,9 +237,7 @@ def test_a_sweep_in_the_plane_passes_an_onset_of_contact_and_comes_back(
         assert (np.abs(found.contacts.gaps) < 1e-10).all()
         touching = (load > limits.sigma_contact, load > limits.sigma_line_contact)
         assert (len(found.contacts) > 0, len(found.contacts) > 1) == touching
-        # Along a line nothing is held between two vertices.
-        between = 1e-2 * diameter if touching[1] else 1e-10
-        assert found.contacts.smallest_gap > -between
+        assert found.contacts.smallest_gap > -2e-6 * diameter
         assert back.energy == pytest.approx(found.energy, rel=1e-6)
     # Minima of energies linear in the load: concave, and area is the slope.
     energies = np.array([found.energy for found in up])

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import nnls
 
-from eulerplateau.solvers.contact.program import Program
+from eulerplateau.solvers.contact.program import Program, least_forces
 
 M, K = 30, 8
 
@@ -54,3 +55,19 @@ def test_a_step_cut_short_fits_lets_nothing_overlap_and_leads_down(
     # H is nearly singular, shifted, where the gradient hardly sees its least mode.
     assert (given.widths + given.rows @ step).min() > -1e-6 * radius
     assert given.gradient @ step + 0.5 * step @ given.hessian @ step < 0.0
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_forces_of_places_that_lie_side_by_side_are_those_of_least_squares(
+    seed: int,
+) -> None:
+    """G is singular: every place has another that is moved by the same forces."""
+    rng = np.random.default_rng(seed)
+    half = rng.normal(size=(K, K // 2))
+    moves = np.hstack([half, half])
+    wanted = rng.normal(size=K)
+    forces = least_forces(moves.T @ moves, -moves.T @ wanted)
+    assert forces.min() >= 0.0
+    assert (forces > 0.0).sum() <= K // 2
+    expected = moves @ nnls(moves, wanted)[0]
+    np.testing.assert_allclose(moves @ forces, expected, atol=1e-9)

@@ -9,7 +9,8 @@
     kinks.py        where what bounds a loop changes; of strands that touch: gap_bounds.py,
                     contact.py
     locus.py        folds and bifurcations in two parameters, point by point
-                    (locus_point.py, normal_form.py); film_locus.py: those of a film
+                    (locus_ahead.py, locus_point.py, normal_form.py), what is special on
+                    them (locus_between.py); film_locus.py: those of a film
     family.py       what is varied: energies of a loop that differ in one parameter
     catalogue.py    the distinct equilibria at a load: from random loops (loop_starts.py),
                     and by deflation (deflation.py), told apart by likeness.py; where

@@ -152,10 +152,11 @@ def _trusted(
         part = min(1.0, radius / size) * change
         x = energy.constraint.project(model.x + model.displacement(part))
         if x is not None:
-            gained = energy.change(model.x, x - model.x)
-            trusted = wider(model, part, gained, radius)
+            moved = x - model.x
+            trusted = wider(model, part, energy.change(model.x, moved), radius)
             if trusted is not None:
-                return x, trusted
+                # To the last bit where the change was asked for: a film is known there.
+                return model.x + moved, trusted
         radius = 0.4 * min(size, radius)
     return None
 

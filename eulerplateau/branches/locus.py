@@ -20,7 +20,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.control import Direction, Motion, StepControl
 from eulerplateau.branches.family import Family
-from eulerplateau.branches.locus_ahead import Ahead, corrected
+from eulerplateau.branches.locus_ahead import Ahead
 from eulerplateau.branches.locus_between import Resolution, Special, special_points
 from eulerplateau.branches.locus_point import Course, LocusPoint, correct, trial
 from eulerplateau.branches.normal_form import NO_PART, part_along
@@ -202,7 +202,7 @@ def _advance(ahead: Ahead, step: float) -> LocusPoint | None:
         return None
     if not after.energy.holds(after.model.x):
         near = replace(after, family=after.family.near(after.model.x))
-        after = corrected(near, after.place, after) or after
+        after = near.next_to(after.place, after.direction) or after
     return replace(after, arclength=before.arclength + step)
 
 

@@ -1,4 +1,4 @@
-"""Where a curve of special points goes on, and where it runs between two of its points.
+"""Where a curve of special points goes on.
 
 A point's direction d is of unit arclength. By the way t along another direction w the curve
 has the derivative d / (w . d), whose part along w is 1: guesses lie in the hyperplanes in
@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.branches.control import Motion
-from eulerplateau.branches.locus_point import LocusPoint, correct
+from eulerplateau.branches.locus_point import LocusPoint
 
 # Points whose directions say where a curve goes on, and the cosine up to which they do.
 _KNOWN = 6
@@ -89,34 +89,11 @@ class Ahead:
     def reached(self, step: float) -> LocusPoint | None:
         """Return the point at arclength `step` from there; None if it is not corrected."""
         place, steepness = self.guess(step)
-        found = corrected(replace(self.point, steepness=steepness), place, self.point)
+        near = replace(self.point, steepness=steepness)
+        found = near.next_to(place, self.point.direction)
         with suppress(LinAlgError):
             return found if found is None or np.isfinite(found.coefficient) else None
         return None
-
-
-def corrected(near: LocusPoint, guess: Motion, heading: LocusPoint) -> LocusPoint | None:
-    """Return the point in the hyperplane through a guess, by what is known near by."""
-    modes = [near.model.displacement(mode) for mode in near.modes.T]
-    return correct(
-        near.course, near.family, guess, heading.direction, modes, near.steepness
-    )
-
-
-def between(
-    before: LocusPoint, after: LocusPoint, part: float, way: Motion
-) -> tuple[Motion, Motion]:
-    """Return place and steepness part of the way, along a direction, between two points.
-
-    By Hermite's cubic through both, and linearly.
-    """
-    gap = after.place - before.place
-    reach = before.dot(way, gap)
-    slopes = [it.direction * (reach / it.dot(way, it.direction)) for it in (before, after)]
-    rest = 1 - part
-    place = before.place + gap * (part**2 * (3 - 2 * part))
-    place += slopes[0] * (part * rest**2) - slopes[1] * (part**2 * rest)
-    return place, before.steepness * rest + after.steepness * part
 
 
 def _divided(t: list[float], values: list[Motion]) -> Iterator[Motion]:

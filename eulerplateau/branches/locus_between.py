@@ -10,7 +10,6 @@ from functools import partial
 from scipy.optimize import brentq
 
 from eulerplateau.branches.control import Motion
-from eulerplateau.branches.locus_ahead import between, corrected
 from eulerplateau.branches.locus_point import LocusPoint
 from eulerplateau.branches.normal_form import NO_PART, part_along
 
@@ -73,6 +72,22 @@ def special_points(before: LocusPoint, after: LocusPoint) -> Iterator[LocusPoint
         yield replace(point, special=kind)
 
 
+def between(
+    before: LocusPoint, after: LocusPoint, part: float, way: Motion
+) -> tuple[Motion, Motion]:
+    """Return place and steepness part of the way, along a direction, between two points.
+
+    By Hermite's cubic through both, and linearly.
+    """
+    gap = after.place - before.place
+    reach = before.dot(way, gap)
+    slopes = [it.direction * (reach / it.dot(way, it.direction)) for it in (before, after)]
+    rest = 1 - part
+    place = before.place + gap * (part**2 * (3 - 2 * part))
+    place += slopes[0] * (part * rest**2) - slopes[1] * (part**2 * rest)
+    return place, before.steepness * rest + after.steepness * part
+
+
 def _other(number: int, point: LocusPoint) -> float:
     """Return an eigenvalue of a mode that is not followed."""
     return float(point.others[number])
@@ -112,7 +127,7 @@ def _located(
             near = replace(near, steepness=steepness)
             # Where another mode is lost, or folds end, the equations are singular.
             places = (guess + way * aside for aside in _ASIDE)
-            tried = (corrected(near, place, before) for place in places)
+            tried = (near.next_to(place, before.direction) for place in places)
             found = next((point for point in tried if point is not None), None)
             if found is None:
                 raise ArithmeticError

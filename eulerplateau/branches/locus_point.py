@@ -155,6 +155,11 @@ class LocusPoint:
         """Return the product of two motions in which arclength is measured."""
         return self.course.dot(self.model, one, other)
 
+    def next_to(self, guess: Motion, normal: Motion) -> LocusPoint | None:
+        """Return the point in the hyperplane through a guess, by what is known here."""
+        modes = [self.model.displacement(mode) for mode in self.modes.T]
+        return correct(self.course, self.family, guess, normal, modes, self.steepness)
+
     def reversed(self) -> LocusPoint:
         """Return the point heading the other way."""
         return replace(self, direction=self.direction * -1.0)

@@ -6,8 +6,9 @@
                   (condensation.py on elimination.py and dissection.py)
     area.py       the true soap film, on the geometry of its triangles (tiling.py)
     interior.py   that film as a function of its loop near one shape, its vertices moving
-                  along normals (normal_moves.py) or freely (free_film.py), to a discrete
-                  minimal surface (minimal_surface.py); area_term.py: its energy
+                  along normals (heights_film.py, normal_moves.py) or freely (free_film.py),
+                  to a discrete minimal surface (minimal_surface.py); area_term.py: its
+                  energy
     with_loop.py  film and loop in one sparse matrix, factorised by indefinite.py
     repair.py     thin triangles replaced (flips.py); harmonic.py: how it follows its loop
     plane.py      a soap film kept in its plane; plane_mesh.py: how its mesh follows

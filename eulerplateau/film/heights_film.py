@@ -52,8 +52,7 @@ class HeightsFilm(LocalFilm):
             fresh = inverse is None or error > _SLOW * before
             if inverse is None or fresh:
                 inverse = variations.stiffness(state.sides)
-                if self._inverse:
-                    self._inverse[:] = [inverse]
+                self._inverse[:] = [inverse]
             state = self._descend(base, state, force, inverse)
         raise LinAlgError("the film does not come to rest")
 

@@ -8,6 +8,7 @@ regular that is stable, and by Sylvester's law the pivots count the negative eig
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -17,6 +18,7 @@ from scipy.linalg.lapack import dsytrf, dsytrs
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.elimination import Elimination
+from eulerplateau.film.solve_kernels import solve_symmetric_fronts
 
 # Columns of LAPACK's blocks.
 _COLUMNS = 32
@@ -36,11 +38,6 @@ class _Part:
     factor: FloatArray
     pivots: IntArray
 
-    def solve(self, own: FloatArray) -> FloatArray:
-        """Return F_11^-1 own (n, m)."""
-        found: FloatArray = dsytrs(self.factor, self.pivots, own, lower=1)[0]
-        return found
-
 
 @dataclass(frozen=True)
 class IndefiniteFactor:
@@ -52,16 +49,27 @@ class IndefiniteFactor:
 
     def solve(self, rhs: FloatArray) -> FloatArray:
         """Return the solution (n, m) for right-hand sides (n, m)."""
-        ordered = rhs[self._order]
-        for part in self._parts:
-            own = ordered[part.start : part.stop]
-            ordered[part.around] -= part.response.T @ own
-            ordered[part.start : part.stop] = part.solve(own)
-        for part in reversed(self._parts):
-            ordered[part.start : part.stop] -= part.response @ ordered[part.around]
-        x = np.empty_like(ordered)
-        x[self._order] = ordered
+        columns = np.ascontiguousarray(rhs[self._order].T)
+        solve_symmetric_fronts(*self._packed, columns)
+        x = np.empty((len(self._order), len(columns)))
+        x[self._order] = columns.T
         return x
+
+    @cached_property
+    def _packed(self) -> tuple[IntArray, IntArray, IntArray, IntArray, FloatArray]:
+        """All parts as arrays, for solve_kernels.py."""
+        parts = self._parts
+        starts = np.array([part.start for part in parts])
+        counts = np.cumsum([0, *(len(part.around) for part in parts)])
+        around = np.concatenate([part.around for part in parts])
+        pieces = [piece for part in parts for piece in (part.factor, part.response)]
+        return (
+            starts,
+            counts,
+            around,
+            np.concatenate([part.pivots for part in parts]),
+            np.concatenate([piece.ravel("F") for piece in pieces]),
+        )
 
 
 def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> IndefiniteFactor:

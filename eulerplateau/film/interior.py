@@ -156,7 +156,7 @@ class LocalFilm(ABC):
     variations: InteriorUnknowns
     # The last films asked for: a solver comes back to them for force, energy and Hessian.
     _recent: list[FilmAtRest] = field(default_factory=list, init=False, repr=False)
-    # The last interior that was factorised, of a film that keeps it for those near by.
+    # The last interior that was factorised on the way to rest, kept for films near by.
     _inverse: list[Condensation] = field(default_factory=list, init=False, repr=False)
 
     @property
@@ -244,10 +244,7 @@ class LocalFilm(ABC):
         return state
 
     def keeps_inverse(self, found: FilmAtRest) -> None:
-        """Keep the factorised interior, first that of this film, for films near by.
-
-        They come to rest in steps that are cheaper, and less far below rounding.
-        """
+        """Keep a factorised interior for films near by: this one's if there is none."""
         if not self._inverse:
             self._inverse.append(found.inside)
 

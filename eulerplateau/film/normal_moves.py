@@ -115,13 +115,14 @@ class NormalHeights:
         self, blocks: FloatArray, load: float, loop: LoopStiffness, strip: bool
     ) -> IndefiniteFactor:
         """Factorise the film's Hessian, `load` times, with what its loop adds."""
-        moves = self if strip else self.bare()
+        moves = self if strip else self.bare
         up, across, kept = moves._entries(blocks)
         film = load * np.concatenate([up, across, across, kept])
         return factorise_indefinite(*moves._whole.assemble(film, loop))
 
+    @cached_property
     def bare(self) -> NormalHeights:
-        """Return the variations in which no strip of the film follows the loop."""
+        """The variations in which no strip of the film follows the loop."""
         weight = np.where(self.tiling.is_inside, 0.0, 1.0)
         return replace(self, weight=weight)
 

@@ -1,8 +1,7 @@
-"""Solutions with the fronts of a Cholesky factor, one after the other: compiled loops.
+"""Solutions with the fronts of a factor, one after the other: compiled loops.
 
 Arrays in, arrays out. Fronts are small, and a call of BLAS for each would cost more than
-its work. The factor of front p is data[first[p]:], column by column: C (n, n), then F_21
-C^-T (n_around, n), see elimination.py.
+its work.
 """
 
 from __future__ import annotations
@@ -25,8 +24,10 @@ def solve_fronts(
 ) -> None:
     """Replace columns (m, N) of right-hand sides, in the order of the rows, by solutions.
 
-    Front p has rows starts[p] ... stops[p] - 1 and hangs on the rows
-    around[pointer[p]:pointer[p + 1]]. Rows of no front are held: they become zero.
+    By Cholesky's factor, that of front p data[first[p]:], column by column: C (n, n), then
+    F_21 C^-T (n_around, n), see elimination.py. Front p has rows starts[p] ... stops[p] - 1
+    and hangs on the rows around[pointer[p]:pointer[p + 1]]. Rows of no front are held: they
+    become zero.
     """
     widest, inside = 0, stops[-1] if len(stops) else 0
     for p in range(len(starts)):
@@ -71,3 +72,87 @@ def solve_fronts(
                 for i in range(j + 1, n):
                     pull += column[i] * own[i]
                 own[j] = (own[j] - pull) / column[j]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+def solve_symmetric_fronts(
+    starts: IntArray,
+    pointer: IntArray,
+    around: IntArray,
+    pivots: IntArray,
+    data: FloatArray,
+    columns: FloatArray,
+) -> None:
+    """Replace columns (m, N) of right-hand sides, in the order of the rows, by solutions.
+
+    By a factor of indefinite.py, front after front in `data`, column by column: LAPACK's
+    factor (n, n), then F_11^-1 F_12 (n, n_around). Front p has the rows from starts[p] on
+    and hangs on the rows around[pointer[p]:pointer[p + 1]].
+    """
+    stops = np.append(starts[1:], columns.shape[1])
+    for c in range(len(columns)):
+        x, at = columns[c], 0
+        for p in range(len(starts)):
+            own, rows = x[starts[p] : stops[p]], around[pointer[p] : pointer[p + 1]]
+            n, factor = len(own), at
+            at += n * n
+            for i in range(len(rows)):
+                response, left = data[at : at + n], 0.0
+                for j in range(n):
+                    left += response[j] * own[j]
+                x[rows[i]] -= left
+                at += n
+            _solve_pivoted(data[factor : factor + n * n], pivots[starts[p] : stops[p]], own)
+        for p in range(len(starts) - 1, -1, -1):
+            own, rows = x[starts[p] : stops[p]], around[pointer[p] : pointer[p + 1]]
+            n = len(own)
+            for i in range(len(rows) - 1, -1, -1):
+                at -= n
+                response, value = data[at : at + n], x[rows[i]]
+                for j in range(n):
+                    own[j] -= response[j] * value
+            at -= n * n
+
+
+@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+def _solve_pivoted(factor: FloatArray, pivots: IntArray, b: FloatArray) -> None:
+    """Solve with Bunch and Kaufman's L D L^T as LAPACK's dsytrf leaves it, lower.
+
+    factor : (n n,), column by column; b : (n,), replaced by the solution
+    """
+    n, k = len(b), 0
+    while k < n:
+        column = factor[k * n : (k + 1) * n]
+        if pivots[k] > 0:
+            _swap(b, k, pivots[k] - 1)
+            for i in range(k + 1, n):
+                b[i] -= column[i] * b[k]
+            b[k] /= column[k]
+            k += 1
+            continue
+        beside = factor[(k + 1) * n : (k + 2) * n]
+        _swap(b, k + 1, -pivots[k] - 1)
+        for i in range(k + 2, n):
+            b[i] -= column[i] * b[k] + beside[i] * b[k + 1]
+        between = column[k + 1]
+        first, second = column[k] / between, beside[k + 1] / between
+        one, other = b[k] / between, b[k + 1] / between
+        b[k] = (second * one - other) / (first * second - 1)
+        b[k + 1] = (first * other - one) / (first * second - 1)
+        k += 2
+    k = n - 1
+    while k >= 0:
+        two = pivots[k] < 0
+        for row in range(k, k - 1 - two, -1):
+            column, value = factor[row * n : (row + 1) * n], b[row]
+            for i in range(k + 1, n):
+                value -= column[i] * b[i]
+            b[row] = value
+        _swap(b, k, abs(pivots[k]) - 1)
+        k -= 1 + two
+
+
+@njit(cache=True)
+def _swap(b: FloatArray, i: int, j: int) -> None:
+    """Exchange two entries of b (n,)."""
+    b[i], b[j] = b[j], b[i]

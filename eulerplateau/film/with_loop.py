@@ -52,39 +52,44 @@ class LoopStiffness:
         """Number of unknowns that hold the loop."""
         return int(self.held.shape[1]) + 3 * len(self.pinned)
 
-    def entries(self, first: int) -> tuple[FloatArray, IntArray, IntArray]:
-        """Return values (k,), rows and columns, of unknowns of the loop from `first` on.
+    @property
+    def entries(self) -> FloatArray:
+        """The values (k,) of its entries; of those that hold, in the loop's rows only."""
+        held, pinned = self.held.T, 3 * len(self.pinned)
+        chain = np.repeat(self.chain, 3, axis=1)
+        along = self.along.ravel()
+        springs = np.full(3 * pinned, self.stiffness)
+        pairs = [chain[0], chain[1], chain[1], chain[2], chain[2], -along, -along, along]
+        return np.concatenate([*pairs, along, (self.stiffness * held).ravel(), springs])
 
-        Of entries that hold, the rows of the loop only.
-        """
+    def places(self, first: int) -> tuple[IntArray, IntArray]:
+        """Return rows and columns (k,) of the entries, of unknowns from `first` on."""
         n = self.chain.shape[1]
         v = np.arange(n)
         # A column for each coordinate of each vertex.
         at = first + 3 * v[:, None] + _AXES
-        after = [np.roll(at, -step, axis=0) for step in range(_REACH + 1)]
-        values, row, column = [], [], []
+        row, column = [], []
 
-        def add(value: FloatArray, one: IntArray, other: IntArray) -> None:
-            values.append(np.broadcast_to(value, one.shape).ravel())
+        def add(one: IntArray, other: IntArray) -> None:
             row.append(one.ravel())
             column.append(np.broadcast_to(other, one.shape).ravel())
 
-        for step, other in enumerate(after):
-            add(self.chain[step, :, None], at, other)
-            if step:
-                add(self.chain[step, :, None], other, at)
+        add(at, at)
+        for step in range(1, _REACH + 1):
+            add(at, after := np.roll(at, -step, axis=0))
+            add(after, at)
         tension = first + 3 * n + v[:, None] + 0 * _AXES
-        for sign, vertex in ((-1.0, at), (1.0, after[1])):
-            add(sign * self.along, tension, vertex)
-            add(sign * self.along, vertex, tension)
+        for vertex in (at, np.roll(at, -1, axis=0)):
+            add(tension, vertex)
+            add(vertex, tension)
         last = first + 4 * n
-        for number, motion in enumerate(self.held.T):
-            add(self.stiffness * motion.reshape(n, 3), at, np.array(last + number))
+        for number in range(self.held.shape[1]):
+            add(at, np.array(last + number))
         springs = last + self.held.shape[1] + np.arange(3 * len(self.pinned))
-        add(np.array(self.stiffness), at[self.pinned].ravel(), springs)
-        add(np.array(self.stiffness), springs, springs)
-        add(np.array(self.stiffness), at[self.pinned], at[self.pinned])
-        return np.concatenate(values), np.concatenate(row), np.concatenate(column)
+        add(at[self.pinned].ravel(), springs)
+        add(springs, springs)
+        add(at[self.pinned], at[self.pinned])
+        return np.concatenate(row), np.concatenate(column)
 
 
 @dataclass(frozen=True)
@@ -108,18 +113,15 @@ class FilmWithLoop:
         self, film: FloatArray, loop: LoopStiffness
     ) -> tuple[Elimination, FloatArray]:
         """Return the matrix of a film's entries (m,) and its loop's, to be factorised."""
-        values, row, column = loop.entries(self.n_i)
-        return self._elimination(row, column, loop), np.concatenate([film, values])
+        return self._elimination(loop), np.concatenate([film, loop.entries])
 
-    def _elimination(
-        self, row: IntArray, column: IntArray, loop: LoopStiffness
-    ) -> Elimination:
+    def _elimination(self, loop: LoopStiffness) -> Elimination:
         """Return it, made once as long as the same vertices are pinned and as much held."""
         key = np.append(loop.pinned, loop.n_held)
         for known, found in self.known:
             if np.array_equal(known, key):
                 return found
-        pieces = self._pieces()
+        pieces, (row, column) = self._pieces(), loop.places(self.n_i)
         first = self.n_i + 4 * self.n_b
         kept = np.arange(first, first + loop.n_held)
         whole = np.concatenate([self.row, row]), np.concatenate([self.column, column])

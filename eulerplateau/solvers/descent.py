@@ -111,14 +111,16 @@ class Descent:
             step = model.newton_step(radius)
             if step is None:
                 step = bounded_step(energy, model.dense, radius)
-            x = energy.constraint.project(model.x + step.moved)
-            gained = change_of_energy(energy, model.x, x)
-            if x is not None and gained is not None:
-                moved = x - model.x
+            reached = energy.constraint.project(model.x + step.moved)
+            gained = change_of_energy(energy, model.x, reached)
+            if reached is not None and gained is not None:
+                moved = reached - model.x
                 noise = noise_of(energy, model.x, moved, model.tensions)
                 wider = accepted(step, gained, noise, radius)
                 if wider is not None:
-                    return State(self.models.at(x, model), wider, state.iteration + 1)
+                    # To the last bit where the change was asked for: a film is known there.
+                    after = self.models.at(model.x + moved, model)
+                    return State(after, wider, state.iteration + 1)
             radius = 0.25 * min(step.size, radius)
         return None
 

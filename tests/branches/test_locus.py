@@ -22,7 +22,8 @@ from eulerplateau.branches import (
     special_at,
 )
 from eulerplateau.branches.control import Motion
-from eulerplateau.branches.locus_ahead import Ahead, between
+from eulerplateau.branches.locus_ahead import Ahead
+from eulerplateau.branches.locus_between import between
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LoopEnergy, Term, Unconstrained
 from eulerplateau.threads import one_thread

@@ -44,6 +44,7 @@ _BLOCK, _ROUNDS = 3, 12
 class FilmModel:
     """The second-order model of a soap film at a loop x (n, 3): see TangentModel.
 
+    motions : (3 n, m) float, those that cost nothing, orthonormal
     unbalanced : (n, 3) float, what tensions do not balance of the force
     """
 
@@ -52,6 +53,7 @@ class FilmModel:
     loop: Loop
     energy: LoopEnergy
     x: FloatArray
+    motions: FloatArray
     tensions: FloatArray
     unbalanced: FloatArray
     residual: float
@@ -69,12 +71,11 @@ class FilmModel:
     @cached_property
     def stiffness(self) -> LoopStiffness:
         """What the loop adds to the matrix of its film."""
-        held = orthonormal(self.energy, self.energy.free_motions(self.x))
         pinned = np.arange(3) * len(self.x) // 3
         chain = self.loop.chain(self.tensions)
         scale = float(chain[0].max())
         along = scale * self.loop.chords(self.x) / self.loop.rest_lengths[:, None]
-        return LoopStiffness(chain, along, held, pinned, scale)
+        return LoopStiffness(chain, along, self.motions, pinned, scale)
 
     @cached_property
     def bare(self) -> IndefiniteFactor | None:
@@ -196,6 +197,7 @@ class FilmModels(DenseModels):
             loop=self.loop,
             energy=self.energy,
             x=x,
+            motions=motions,
             tensions=tensions,
             unbalanced=unbalanced,
             residual=float(np.abs(unbalanced).max()) / largest,

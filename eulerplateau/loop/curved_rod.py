@@ -155,7 +155,7 @@ class CurvedRod(OwnTerm):
         return self.framed.natural**2 * float(self.loop.mean_lengths[0])
 
     def moment(self, x: FloatArray) -> float:
-        """Return the twisting moment at the weld, where turns are put in: dE/dLk = 2 pi M."""
+        """Return the twisting moment at the weld, where turns go in: dE/dLk = 2 pi M."""
         lacking = 0.5 * self._at_weld * math.sin(2 * math.pi * self.link)
         return float(self.moments(x)[-1]) - lacking
 

@@ -125,7 +125,7 @@ def test_first_films_hardly_writhe():
 
 
 def test_start_that_pinches_on_a_coarse_mesh_beside_a_fold_ends_wide_on_finer_ones():
-    """On 72 edges the film with a wide waist folds at a smaller link than without a mesh."""
+    """On 72 edges the film with a wide waist folds at a smaller link than it should."""
     case = cases()[40]
     found = rod_film(Start.LOBES, case.load, case.twist_ratio, case.link)
     assert found.resolved

@@ -140,7 +140,9 @@ class Frames:
         return found
 
 
-def _bent_and_twisted(curve: Curve, psi: FloatArray, rate: FloatArray) -> tuple[Jet, Jet, Jet]:
+def _bent_and_twisted(
+    curve: Curve, psi: FloatArray, rate: FloatArray
+) -> tuple[Jet, Jet, Jet]:
     """Return k_1 ds, Omega ds and ds over the variable that x', x'' and psi' are by."""
     given = np.column_stack([curve.x1, curve.x2, psi, rate])
     px, py, pz, qx, qy, qz, angle, turning = variables(given)

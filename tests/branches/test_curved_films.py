@@ -25,9 +25,8 @@ from eulerplateau.branches.special import special_points
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.conformal import GENERAL, TWISTED, disk, edge, make_basis
 from eulerplateau.exact.planar import planar_film
-from eulerplateau.solvers import Problem, solve, tangent_model
-from scripts.studies.common import make_mesh
-from scripts.studies.welded_loop.meshes import richardson
+from eulerplateau.solvers import tangent_model
+from scripts.studies.welded_loop.meshes import curved_film, richardson
 
 
 def family_of_disk(basis, load, ratio, curvature, parameter):
@@ -219,15 +218,8 @@ def test_work_of_a_turn_is_2_pi_times_the_moment_where_the_rod_was_welded(ratio,
 def on_meshes(load, ratio, link, curvature, edges):
     """Yield energy, area, writhe and moment of the film on disks of so many loop edges."""
     for n in edges:
-        mesh = make_mesh(polygon={"kind": "circle"}, edge_length=2 * pi / n)
-        bent = mesh.x.copy()
-        bent[:, 2] += 2 * bent[:, 0] * bent[:, 1]
-        problem = Problem(
-            mesh, "area", twist_ratio=ratio, link=link, rest_curvature=curvature
-        )
-        found = solve(problem, load, bent)
+        found, said = curved_film(n, load, ratio, link, curvature)
         assert found.is_minimum
-        said = problem.said_of_loop(found.shape)[0]
         yield found.energy, found.film_energy / load, said["writhe"], said["twist_moment"]
 
 

@@ -68,7 +68,7 @@ def test_twisted_film_is_the_limit_of_meshes(load, ratio, link):
 
 @pytest.mark.slow
 def test_film_that_is_all_but_closed_at_its_waist_is_the_limit_of_meshes():
-    """At a waist of 0.012 L, two or three edges of the loop: to 1e-5, with second order.
+    """At a waist of 0.012 L, 1.6 to 3.1 edges of the loop: to 1e-5, with second order.
 
     The writhe errs by a few parts in 1e5 on every mesh, as vertices happen to lie.
     """

@@ -39,7 +39,7 @@ _OPTIONS = {
     "--rest-curvature",
     type=float,
     default=0.0,
-    help="The rod's natural curvature over 2 pi / L; not with a link.",
+    help="The rod's natural curvature over 2 pi / L.",
 )
 @click.option(
     "--diameter",

@@ -141,19 +141,31 @@ class CurvedRod(OwnTerm):
         return 0.5 * float(self.moments(x) @ self.frame(x).twists)
 
     def energy(self, x: FloatArray) -> float:
-        """Return the energy, of bending against the natural curvature and of twist."""
-        return self.framed.energy(self.frame(x))
+        """Return the energy, of bending against the natural curvature and of twist.
+
+        At the weld two natural curvatures meet, 2 pi Lk apart, and the vertex there bends
+        against their mean, which is less by cos(pi Lk): k0^2 is less by its square.
+        """
+        lacking = self._at_weld * math.sin(math.pi * self.link) ** 2
+        return self.framed.energy(self.frame(x)) - lacking
+
+    @property
+    def _at_weld(self) -> float:
+        """k0^2 of the first vertex."""
+        return self.framed.natural**2 * float(self.loop.mean_lengths[0])
+
+    def moment(self, x: FloatArray) -> float:
+        """Return the twisting moment at the weld, where turns go in: dE/dLk = 2 pi M."""
+        lacking = 0.5 * self._at_weld * math.sin(2 * math.pi * self.link)
+        return float(self.moments(x)[-1]) - lacking
 
     def columns(self, x: FloatArray) -> Mapping[str, float]:
-        """Return what a table says of the rod; the moment is that at the weld.
-
-        There turns are put in: dE/dLk = 2 pi M.
-        """
+        """Return what a table says of the rod; the moment is that at the weld."""
         return {
             "twist_energy": self.twist_energy(x),
             "writhe": self.link - self.frame(x).turns,
             "link": self.link,
-            "twist_moment": float(self.moments(x)[-1]),
+            "twist_moment": self.moment(x),
             "rest_curvature": self.curvature,
         }
 

@@ -12,18 +12,21 @@ from eulerplateau.branches import StepControl, branches_from, first_point, follo
 from eulerplateau.branches.conformal import (
     CurvedFamily,
     NoFilmError,
+    SmoothFamily,
     Start,
     film_of,
     resolved,
     rod_film,
     tail,
 )
+from eulerplateau.branches.conformal.curved import curved
 from eulerplateau.branches.point import point_near
 from eulerplateau.branches.special import special_points
 from eulerplateau.errors import SpecError
 from eulerplateau.exact.conformal import GENERAL, TWISTED, disk, edge, make_basis
 from eulerplateau.exact.planar import planar_film
-from eulerplateau.solvers import tangent_model
+from eulerplateau.solvers import Problem, solve, tangent_model
+from tests.helpers.shapes import disk_points, mesh_of
 
 
 def family_of_disk(basis, load, ratio, curvature, parameter):
@@ -156,9 +159,127 @@ def test_rod_that_is_hardly_curved_is_nearly_a_straight_one():
     assert one.writhe == pytest.approx(straight.writhe, abs=0.01)
 
 
-def test_what_is_not_known_is_refused():
-    with pytest.raises(SpecError, match="weld"):
-        rod_film(Start.LOBES, 1700.0, 0.7, 0.25, 0.5)
+@cache
+def turned_once():
+    """Return what the disk at 500, C/B = 1/2 and Lk = 1 leads to, at q = 0.4."""
+    values = {"load": 500.0, "twist_ratio": 0.5, "link": 1.0}
+    basis = make_basis(16, TWISTED)
+    family = SmoothFamily(basis, values)
+    flat = family.unknowns.x(disk(basis, 500.0).coefficients)
+    return curved(point_near(family, flat, 500.0), 0.4)
+
+
+def test_film_of_a_rod_that_was_turned_once_is_stable_and_balanced():
+    """q = 0.4, Lk = 1: its frame winds round it once, and there is no weld to be seen."""
+    point = turned_once()
+    assert tail(point) < 1e-10
+    assert point.family.twist(point.value).writhe(point.x) > 0.01
+    assert imbalance(point) < 1e-8
+    stability = point.family.in_space(point)
+    assert stability.n_unstable == 0
+    assert stability.eigenvalues[0] > 1
+
+
+@pytest.mark.parametrize("ratio", [0.4, 0.7])
+def test_disk_that_was_turned_once_gains_what_its_frame_can_take(ratio):
+    """E(q) - E(0) = 4 pi^2 q^2 (1 - B / 2 C) + O(q^4).
+
+    The frame, d_1 = n cos(s / R) + b sin(s / R), gives way by eta = a sin(s / R): that
+    changes -2 k0 oint k_1 ds by 2 pi k0 a and the twist by gamma pi a^2 / 2 R. Nothing else
+    answers: what pulls at the loop turns it or moves it as a whole.
+    """
+    straight = rod_film(Start.DISK, 500.0, ratio, 1.0)
+    rises = []
+    for q in (0.05, 0.1):
+        found = rod_film(Start.DISK, 500.0, ratio, 1.0, q)
+        rises.append((found.energy - straight.energy) / (2 * pi * q) ** 2)
+    at_none = rises[0] + (rises[0] - rises[1]) / 3
+    assert at_none == pytest.approx(1 - 1 / (2 * ratio), rel=1e-3)
+
+
+def test_film_of_a_rod_turned_the_other_way_is_the_mirror_image():
+    left, right = (rod_film(Start.DISK, 500.0, 0.5, link, 0.3) for link in (-1.0, 1.0))
+    assert left.energy == pytest.approx(right.energy, rel=1e-12)
+    assert left.writhe == pytest.approx(-right.writhe, rel=1e-8)
+    assert left.twist_moment == pytest.approx(-right.twist_moment, rel=1e-10)
+
+
+@pytest.mark.slow
+def test_work_of_a_turn_is_2_pi_times_the_moment_where_the_rod_was_welded():
+    """dE/dLk = 2 pi M of whole turns, from either side: there the curvature jumps."""
+    turned = rod_film(Start.DISK, 500.0, 0.5, 1.0, 0.3)
+    h = 2e-3
+    coarse, fine = (
+        (
+            rod_film(Start.DISK, 500.0, 0.5, 1.0 + step, 0.3).energy
+            - rod_film(Start.DISK, 500.0, 0.5, 1.0 - step, 0.3).energy
+        )
+        / (2 * step)
+        for step in (2 * h, h)
+    )
+    work = (4 * fine - coarse) / 3
+    assert work == pytest.approx(2 * pi * turned.twist_moment, rel=1e-8)
+
+
+def on_meshes(load, ratio, link, curvature, edges):
+    """Yield energy, area, writhe and moment of the film on disks similar to each other."""
+    for n in edges:
+        mesh = mesh_of(*disk_points(n // 6))
+        bent = mesh.x.copy()
+        bent[:, 2] += 2 * bent[:, 0] * bent[:, 1]
+        problem = Problem(
+            mesh, "area", twist_ratio=ratio, link=link, rest_curvature=curvature
+        )
+        found = solve(problem, load, bent)
+        assert found.is_minimum
+        said = problem.said_of_loop(found.shape)[0]
+        yield found.energy, found.film_energy / load, said["writhe"], said["twist_moment"]
+
+
+def agrees(values, known, powers=(0, 2, 4)):
+    """Assert that meshes come to a number with order 2, and to 1e-5 if extrapolated."""
+    h, errors = 1 / np.array(EDGES), np.array(values) - known
+    limit = np.linalg.lstsq(h[:, None] ** powers, errors, rcond=None)[0][0]
+    assert limit == pytest.approx(0, abs=1e-5 * abs(known))
+    order = np.polyfit(np.log(h), np.log(np.abs(errors)), 1)[0]
+    assert order == pytest.approx(2, abs=0.15)
+
+
+EDGES = (60, 84, 120, 168)
+
+
+def test_saddle_of_a_curved_rod_is_the_limit_of_meshes():
+    point = saddle()
+    energy, area, *_ = zip(*on_meshes(24 * pi**3, 0.75, 0.0, 1.6, EDGES), strict=True)
+    rod = point.family.twist(point.value)
+    agrees(energy, film_of(point).energy + rod.energy(point.x))
+    agrees(area, film_of(point).area)
+
+
+def test_film_of_a_rod_that_was_turned_once_is_the_limit_of_meshes():
+    """Its moment is another at every vertex, and no weld is seen there."""
+    point = turned_once()
+    energy, area, writhe, _ = zip(*on_meshes(500.0, 0.5, 1.0, 0.4, EDGES), strict=True)
+    rod = point.family.twist(point.value)
+    agrees(energy, film_of(point).energy + rod.energy(point.x))
+    agrees(area, film_of(point).area)
+    agrees(writhe, rod.writhe(point.x))
+
+
+@pytest.mark.slow
+def test_film_of_a_rod_whose_curvature_jumps_at_its_weld_is_the_limit_of_meshes():
+    """The jump leaves a third power of the edges' length in what meshes err by."""
+    found = rod_film(Start.DISK, 500.0, 0.75, 0.3, 0.3)
+    assert found.resolved
+    assert found.n_unstable == 0
+    films = on_meshes(500.0, 0.75, 0.3, 0.3, EDGES)
+    energy, area, writhe, moment = zip(*films, strict=True)
+    known = found.energy, found.film.area, found.writhe, found.twist_moment
+    for values, number in zip((energy, area, writhe, moment), known, strict=True):
+        agrees(values, number, powers=(0, 2, 3))
+
+
+def test_rod_whose_twist_costs_nothing_is_refused():
     with pytest.raises(SpecError, match="twist ratio"):
         rod_film(Start.LOBES, 1700.0, 0.0, 0.0, 0.5)
 

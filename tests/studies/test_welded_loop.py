@@ -68,7 +68,7 @@ def test_twisted_film_is_the_limit_of_meshes(load, ratio, link):
 
 @pytest.mark.slow
 def test_film_that_is_all_but_closed_at_its_waist_is_the_limit_of_meshes():
-    """At a waist of 0.012 L, two or three edges of the loop: to 1e-5, with second order.
+    """At a waist of 0.012 L, 1.6 to 3.1 edges of the loop: to 1e-5, with second order.
 
     The writhe errs by a few parts in 1e5 on every mesh, as vertices happen to lie.
     """
@@ -125,7 +125,7 @@ def test_first_films_hardly_writhe():
 
 
 def test_start_that_pinches_on_a_coarse_mesh_beside_a_fold_ends_wide_on_finer_ones():
-    """On 72 edges the film with a wide waist folds at a smaller link than without a mesh."""
+    """On 72 edges the film with a wide waist folds at a smaller link than it should."""
     case = cases()[40]
     found = rod_film(Start.LOBES, case.load, case.twist_ratio, case.link)
     assert found.resolved

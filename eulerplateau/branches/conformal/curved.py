@@ -12,9 +12,8 @@ from eulerplateau.branches.conformal.resolution import resolved
 from eulerplateau.branches.continuation import Place, next_place
 from eulerplateau.branches.control import StepControl
 from eulerplateau.branches.point import BranchPoint, ahead, first_point, point_near
-from eulerplateau.exact.conformal import LOBED, Basis, make_basis, welded_basis
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
-
+from eulerplateau.exact.conformal import LOBED, Basis, make_basis, welded_basis
 
 # The tail of films on the way to the one asked for.
 _ON_THE_WAY = 1e-6

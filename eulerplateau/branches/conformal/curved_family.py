@@ -57,7 +57,7 @@ class CurvedFamily(SmoothFamily):
         return self.unknowns.x(self.basis.embed(other.basis, coefficients), frame)
 
     def framed(self, other: SmoothFamily, x: FloatArray) -> FloatArray:
-        """Return another family's film, without a frame, with one that is twisted evenly."""
+        """Return a film of a family without frames with one that is twisted evenly."""
         there = other.unknowns.loop(x).coefficients
         coefficients = self.basis.transfer(other.basis, there)
         frame = self.frames.even(self.basis.curve(coefficients))

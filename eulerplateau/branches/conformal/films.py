@@ -104,7 +104,8 @@ def rod_film(
         Lk, in turns. Lobes of a negative one are the mirror image; a twisted film is
         right-handed where it starts, with no link.
     rest_curvature : float
-        q = k0 L / 2 pi, of a rod of link 0: the film is followed to it as well.
+        q = k0 L / 2 pi: from the link the film is followed to it. A rod that was turned by
+        no whole number of turns was welded at phi = 0, the tip of a lobe.
     tell : is told how far that has come, film by film
 
     Raises

@@ -1,9 +1,10 @@
 """True soap films bounded by an elastic loop, to spectral accuracy (docs/true-film.md).
 
     relaxation.py   `relax`: downhill from a start to a film, on kernels.py
-    basis.py        loops as trigonometric polynomials; families.py: their symmetry;
-                    grading.py: grids for narrow waists; sector.py: the part that symmetry
-                    repeats
+    basis.py        loops as trigonometric polynomials, of columns.py; families.py: their
+                    symmetry; grading.py: grids for narrow waists; finer.py: finer bases;
+                    sector.py: the part that symmetry repeats
+    welded.py       loops whose curvature jumps at a weld; tails.py: what that leaves
     energy.py       bending, length, area and their derivatives; writhe.py: the writhe
     equilibrium.py  Newton's method to an equilibrium, stable or not; gauge.py: motions that
                     change nothing

@@ -1,7 +1,6 @@
 from .basis import (
     Basis as Basis,
     Curve as Curve,
-    finer_bases as finer_bases,
     make_basis as make_basis,
 )
 from .branch import (
@@ -16,6 +15,7 @@ from .branch import (
     start as start,
     switch as switch,
 )
+from .columns import waves as waves
 from .eight import FlatEight as FlatEight, flat_eight as flat_eight
 from .energy import (
     Blocks as Blocks,
@@ -42,6 +42,7 @@ from .families import (
     TWISTED as TWISTED,
     Family as Family,
 )
+from .finer import finer_bases as finer_bases
 from .gauge import (
     gauge_fields as gauge_fields,
     gauge_modes as gauge_modes,
@@ -80,10 +81,10 @@ from .strands import (
     crossing as crossing,
     nearest_strands as nearest_strands,
 )
+from .welded import WeldedBasis as WeldedBasis, welded_basis as welded_basis
 from .writhe import (
     smooth_writhe as smooth_writhe,
     writhe_blocks as writhe_blocks,
     writhe_gradient as writhe_gradient,
     writhe_hessian as writhe_hessian,
 )
-from .welded import WeldedBasis as WeldedBasis, welded_basis as welded_basis

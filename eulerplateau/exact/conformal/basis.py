@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import pi
@@ -12,6 +11,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import SpecError
+from eulerplateau.exact.conformal.columns import Columns, Waves, waves
 from eulerplateau.exact.conformal.families import HALF_TURNS, TWISTED, Family
 from eulerplateau.exact.conformal.grading import Grading, dirichlet_form
 
@@ -19,11 +19,6 @@ from eulerplateau.exact.conformal.grading import Grading, dirichlet_form
 _POINTS = 4
 # Share of the harmonics, at the high end, whose size measures the error of truncation.
 LAST = 0.1
-Columns = tuple[tuple[str, int], ...]  # ("cos" or "sin", k) of each
-Waves = tuple[FloatArray, FloatArray, FloatArray]  # (n, columns): values, two derivatives
-# How far a basis is refined.
-MOST_HARMONICS = 288
-_MOST_CROWDED = 1e-12
 
 
 class Curve(NamedTuple):
@@ -282,7 +277,7 @@ class Basis:
         return np.stack([np.ones(len(theta)), np.cos(theta), np.sin(theta)])
 
     def refinements(self) -> tuple[tuple[int, float], ...]:
-        """Return harmonics, and by how much gradings are sharper: first what costs nothing."""
+        """Return harmonics and how much sharper gradings are: first what costs nothing."""
         more = 8 * round(self.harmonics / 6)
         return (self.harmonics, 3), (self.harmonics, 10), (more, 1), (more, 4)
 
@@ -299,21 +294,3 @@ def make_basis(harmonics: int, family: Family, crowding: float = 1.0) -> Basis:
     if not 0 < crowding <= 1:
         raise SpecError("crowding", f"found {crowding}; should be above 0 and at most 1")
     return Basis(harmonics, family, crowding)
-
-
-def finer_bases(basis: Basis, most_harmonics: int = MOST_HARMONICS) -> Iterator[Basis]:
-    """Yield bases that may resolve a film better: sharper gradings, more harmonics, both."""
-    for harmonics, sharper in basis.refinements():
-        crowding = basis.crowding / sharper
-        if harmonics <= most_harmonics and crowding >= _MOST_CROWDED:
-            yield basis.like(harmonics, basis.family, crowding)
-
-
-def waves(columns: Columns, phi: FloatArray) -> Waves:
-    """Return the columns' values and first two derivatives, each (n, columns)."""
-    k = np.array([k for _, k in columns], dtype=np.float64)
-    # sin = cos shifted by a quarter turn.
-    shift = np.array([0.0 if kind == "cos" else pi / 2 for kind, _ in columns])
-    angle = np.outer(phi, k) - shift
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return cosine, -k * sine, -(k**2) * cosine

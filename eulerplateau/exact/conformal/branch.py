@@ -9,7 +9,7 @@ import numpy as np
 
 from eulerplateau.errors import EulerPlateauError
 from eulerplateau.exact.checks import finite
-from eulerplateau.exact.conformal.basis import MOST_HARMONICS, finer_bases, make_basis
+from eulerplateau.exact.conformal.basis import make_basis
 from eulerplateau.exact.conformal.equilibrium import (
     ConformalFilm,
     Direction,
@@ -19,6 +19,7 @@ from eulerplateau.exact.conformal.equilibrium import (
     newton,
 )
 from eulerplateau.exact.conformal.families import Family
+from eulerplateau.exact.conformal.finer import MOST_HARMONICS, finer_bases
 from eulerplateau.exact.conformal.second_variation import Mode, modes
 
 _EASY, _HARD = 4, 10  # corrections: up to which steps grow, and at which they shrink

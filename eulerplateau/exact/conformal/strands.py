@@ -15,7 +15,8 @@ from math import degrees, pi
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.conformal.basis import Basis, Curve, waves
+from eulerplateau.exact.conformal.basis import Basis, Curve
+from eulerplateau.exact.conformal.columns import waves
 
 _CORRECTIONS, _SETTLED = 20, 1e-14
 # Strands of a tube of this radius of curvature or more, in diameters, turn in so many.

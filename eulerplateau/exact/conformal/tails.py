@@ -54,7 +54,7 @@ def _series(p: float, v: int, phi: FloatArray) -> np.ndarray:
     for j in range(_TERMS):
         if j != p - 1:
             found = found + _zeta(p - j, v) * mu**j / factorial(j)
-    return found
+    return np.asarray(found)
 
 
 def _zeta(s: float, v: int) -> float:
@@ -67,4 +67,4 @@ def _integral(p: float, v: int, phi: FloatArray) -> np.ndarray:
     """Return v^p T_p by the rule that is exact for polynomials times t^(p-1) exp(-t)."""
     t, weights = roots_genlaguerre(_POINTS, p - 1)
     kernel = 1 / (1 - np.exp(1j * phi[:, None] - t / v))
-    return np.exp(1j * v * phi) / gamma(p) * (kernel @ weights)
+    return np.asarray(np.exp(1j * v * phi) / gamma(p) * (kernel @ weights))

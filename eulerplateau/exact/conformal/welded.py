@@ -9,8 +9,8 @@ dense at the weld:
 
     phi = v - 4/3 sin v + 1/6 sin 2 v,    dphi/dv = 2/3 (1 - cos v)^2,
 
-v evenly spaced and never 0, so that what is integrated over v is smooth there. Derivatives of loops
-at the grid are by v.
+v evenly spaced and never 0, so that what is integrated over v is smooth there. Derivatives
+of loops at the grid are by v.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ import numpy as np
 from scipy.special import zeta
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.exact.conformal.basis import LAST, Basis, Columns, Waves, waves
+from eulerplateau.exact.conformal.basis import LAST, Basis
+from eulerplateau.exact.conformal.columns import Columns, Waves, waves
 from eulerplateau.exact.conformal.families import Family
 from eulerplateau.exact.conformal.tails import tail
 
@@ -85,7 +86,7 @@ class WeldedBasis(Basis):
         return values, by_v * first, by_v**2 * second
 
     def waves_at(self, columns: Columns, phi: FloatArray) -> Waves:
-        """Return columns and their two derivatives by phi at any phi (n,) but the weld's."""
+        """Return columns and their two derivatives by phi at phi (n,)."""
         smooth = tuple(column for column in columns if column[0] in _TAILS)
         parts = [[wave] for wave in waves(smooth, phi)]
         for order, part in enumerate(parts):
@@ -151,14 +152,17 @@ class WeldedBasis(Basis):
 
     @cached_property
     def _projectors(self) -> tuple[FloatArray, ...]:
-        """What takes values (n,) of each coordinate to coefficients: least squares in phi."""
+        """What takes values (n,) of each coordinate to coefficients."""
         return tuple(self.projector(values) for values, _, _ in self.matrices)
 
     def projector(self, values: FloatArray) -> FloatArray:
-        """Return what takes values (n,) to coefficients of columns (n, m): (m, n)."""
+        """Return what takes values (n,) to coefficients of columns (n, m): (m, n).
+
+        It is that of least squares over phi.
+        """
         share = np.sqrt(self.spacing)
-        taken: FloatArray = np.linalg.pinv(share[:, None] * values, rcond=1e-12) * share
-        return taken
+        taken = np.linalg.pinv(share[:, None] * values, rcond=1e-12) * share
+        return taken.astype(np.float64, copy=False)
 
     def project(self, x: FloatArray) -> FloatArray:
         """Return the coefficients (size, ...) of values (n, 3, ...), least squares."""
@@ -209,7 +213,7 @@ class WeldedBasis(Basis):
         return np.stack([2 * np.sin(self.theta / 2) ** 2, np.sin(self.theta)])
 
     def refinements(self) -> tuple[tuple[int, float], ...]:
-        """Return harmonics, and by how much gradings are sharper: what is at the weld first."""
+        """Return harmonics and how much sharper gradings are: for the weld first."""
         more = 3 * self.harmonics // 2
         return (more, 1), (more, 4)
 

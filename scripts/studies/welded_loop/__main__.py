@@ -31,6 +31,7 @@ from scripts.studies.welded_loop.answers import (
 from scripts.studies.welded_loop.curves import LOADS, Row, rows_at, stable_links
 from scripts.studies.welded_loop.figures import draw_energies, draw_map, draw_shapes
 from scripts.studies.welded_loop.meshes import (
+    curved_film,
     ellipse,
     keeping_ratio,
     richardson,
@@ -50,6 +51,11 @@ BOTH = (
     (1700.0, 2 / 3, 0.25, EDGES),
     (1600.0, 1.0, 0.5, EDGES),
     (1700.0, 1.0, 0.75, (128, 160, 192, 256)),
+)
+# Of rods that are curved by nature, from the disk: load, C/B, link, q and loop edges.
+CURVED = (
+    (500.0, 0.5, 1.0, 0.5, (128, 160, 192, 256)),
+    (500.0, 0.75, 0.3, 0.3, EDGES),
 )
 KEPT_FLAT = (1900.0, 2000.0, 2100.0)
 
@@ -152,10 +158,8 @@ def _on_meshes() -> Iterator[tuple[str, ...]]:
     meshes = [ellipse(edges) for edges in EDGES]
     for load in KEPT_FLAT:
         values = [keeping_ratio(mesh, load) for mesh in meshes]
-        limit, error, order = richardson(EDGES, values)
-        known = nature(load)[0]
         name = f"C/B that keeps lobes flat at {load:g}"
-        yield name, f"{known:.7f}", f"{limit:.7f} ± {error:.0e}", f"{order:.2f}"
+        yield _compared(name, nature(load)[0], EDGES, values)
     for load, ratio, link, edges in BOTH:
         found = rod_film(Start.LOBES, load, ratio, link)
         same = [twisted_film(ellipse(n), load, ratio, link) for n in edges]
@@ -165,13 +169,25 @@ def _on_meshes() -> Iterator[tuple[str, ...]]:
             ("area", found.film.area, [film.film_energy / load for film in same]),
             ("writhe", found.writhe, [polygon_writhe(film.shape.x_loop) for film in same]),
         ):
-            limit, error, order = richardson(edges, values)
-            yield (
-                f"{what} at {at}",
-                f"{known:.7f}",
-                f"{limit:.7f} ± {error:.0e}",
-                f"{order:.2f}",
-            )
+            yield _compared(f"{what} at {at}", known, edges, values)
+    for load, ratio, link, curvature, edges in CURVED:
+        found = rod_film(Start.DISK, load, ratio, link, curvature)
+        both = [curved_film(n, load, ratio, link, curvature) for n in edges]
+        at = f"{load:g}, C/B {ratio:.3g}, Lk {link:g}, q {curvature:g}"
+        for what, known, values in (
+            ("energy", found.energy, [film.energy for film, _ in both]),
+            ("area", found.film.area, [film.film_energy / load for film, _ in both]),
+            ("writhe", found.writhe, [said["writhe"] for _, said in both]),
+        ):
+            yield _compared(f"{what} at {at}", known, edges, values)
+
+
+def _compared(
+    what: str, known: float, edges: tuple[int, ...], values: list[float]
+) -> tuple[str, ...]:
+    """Return a number without a mesh, and what meshes come to."""
+    limit, error, order = richardson(edges, values)
+    return what, f"{known:.7f}", f"{limit:.7f} ± {error:.0e}", f"{order:.2f}"
 
 
 def _numbers() -> dict[str, float]:

@@ -69,6 +69,21 @@ def twisted_film(mesh: Disk, load: float, twist_ratio: float, link: float) -> Eq
     return last
 
 
+def curved_film(
+    loop_edges: int, load: float, ratio: float, link: float, curvature: float
+) -> tuple[Equilibrium, dict[str, float]]:
+    """Return the film a bent disk leads to, of a rod that is curved by nature.
+
+    And what a table says of the rod, by columns.
+    """
+    mesh = make_mesh(polygon={"kind": "circle"}, edge_length=2 * pi / loop_edges)
+    bent = mesh.x.copy()
+    bent[:, 2] += 2 * bent[:, 0] * bent[:, 1]
+    problem = Problem(mesh, "area", twist_ratio=ratio, link=link, rest_curvature=curvature)
+    found = solve(problem, load, bent)
+    return found, problem.said_of_loop(found.shape)[0]
+
+
 def richardson(edges: tuple[int, ...], values: list[float]) -> tuple[float, float, float]:
     """Return the limit of second-order values, its error, and the fitted order.
 

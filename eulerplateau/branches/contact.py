@@ -27,7 +27,7 @@ from eulerplateau.loop import (
     strands_of,
     with_gaps_held,
 )
-from eulerplateau.solvers import contacts_at
+from eulerplateau.solvers import TangentModel, contacts_at
 
 # Gaps in units of L that are closed, or nearly; and times that what touches is changed
 # until nothing pulls and nothing overlaps.
@@ -70,12 +70,12 @@ class Contact:
         return replace(self, touch=touch), what
 
     def contacts(
-        self, point: BranchPoint, loop: Loop, film: FilmOfLoop, energy: LoopEnergy
+        self, model: TangentModel, loop: Loop, film: FilmOfLoop, energy: LoopEnergy
     ) -> Contacts:
-        """Return the contacts at a point; `energy` is that without them."""
+        """Return the contacts at a point's model; `energy` is that without them."""
         strands = self.bounds(loop).strands
-        gaps, _ = strands.at(point.x, self.touch.gaps)
-        return contacts_at(strands, film, energy, point.model, gaps)
+        gaps, _ = strands.at(model.x, self.touch.gaps)
+        return contacts_at(strands, film, energy, model, gaps)
 
     def kept(self) -> Mapping[str, NDArray[Any]]:
         """Return which gaps are closed, for `restored`."""

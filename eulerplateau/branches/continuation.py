@@ -176,10 +176,10 @@ def recentred(point: BranchPoint, control: StepControl) -> BranchPoint:
     """
     if not point.energy.holds(point.x):
         point = _anew(point, point.family.near(point.x), control)
-    if not point.family.rests(point):
+    if not point.family.rests(point.model, point.value):
         point = released(point, control)
     for _ in range(_RECENTRINGS):
-        if point.family.rests(point):
+        if point.family.rests(point.model, point.value):
             break
         point = _anew(point, point.family.near(point.x), control)
     return point

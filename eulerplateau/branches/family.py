@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy
-
-if TYPE_CHECKING:
-    from eulerplateau.branches.point import BranchPoint
+from eulerplateau.solvers import TangentModel
 
 
 class Family(Protocol):
@@ -40,8 +38,8 @@ class Family(Protocol):
     def near(self, x: FloatArray) -> Family:
         """Return the family made anew at a loop x (n, d), or itself."""
 
-    def rests(self, point: BranchPoint) -> bool:
-        """Return whether forces balance at a point as they do at an equilibrium."""
+    def rests(self, model: TangentModel, value: float) -> bool:
+        """Return whether forces balance at a point's model, as at an equilibrium."""
 
     def released(self, x: FloatArray) -> Family:
         """Return the family whose film is free to move inside its surface, if it can be."""

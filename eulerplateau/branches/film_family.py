@@ -16,7 +16,13 @@ from eulerplateau.branches.point import BranchPoint
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers import RESIDUAL_TOLERANCE, Equilibrium, Problem, Status
+from eulerplateau.solvers import (
+    RESIDUAL_TOLERANCE,
+    Equilibrium,
+    Problem,
+    Status,
+    TangentModel,
+)
 
 if TYPE_CHECKING:
     from eulerplateau.branches.contact import Contact
@@ -42,7 +48,7 @@ class NoContact:
         return self
 
     def contacts(
-        self, point: BranchPoint, loop: Loop, film: FilmOfLoop, energy: LoopEnergy
+        self, model: TangentModel, loop: Loop, film: FilmOfLoop, energy: LoopEnergy
     ) -> None:
         """Return None."""
 
@@ -97,12 +103,12 @@ class FilmFamily:
         """Return the film made anew at a loop (n_b, 3), and what touches there."""
         return self.on(self.film.renewed(x), self.contact.near(x))
 
-    def rests(self, point: BranchPoint) -> bool:
+    def rests(self, model: TangentModel, value: float) -> bool:
         """Return whether forces balance along the film's normals there.
 
         They do along those of the shape that the film was made near, until it has turned.
         """
-        return self._recorded(point).converged
+        return self._recorded(model, value).converged
 
     def released(self, x: FloatArray) -> FilmFamily:
         """Return the film as a minimal surface, where it is curved."""
@@ -126,14 +132,14 @@ class FilmFamily:
     def equilibrium(self, point: BranchPoint) -> Equilibrium:
         """Return the equilibrium at a point of a branch of it."""
         problem, _ = self.at(point.value)
-        found = problem.classified(self._recorded(point))
+        found = problem.classified(self._recorded(point.model, point.value))
         return replace(found, iterations=point.corrections, stability=point.stability)
 
-    def _recorded(self, point: BranchPoint) -> Equilibrium:
-        (problem, load), x = self.at(point.value), point.x
+    def _recorded(self, model: TangentModel, value: float) -> Equilibrium:
+        (problem, load), x = self.at(value), model.x
         energy = self.film.energy(problem.loop, load)
-        contacts = self.contact.contacts(point, problem.loop, self.film, energy)
-        shape, tensions = self.film.shape(x), point.model.tensions[: len(x)]
+        contacts = self.contact.contacts(model, problem.loop, self.film, energy)
+        shape, tensions = self.film.shape(x), model.tensions[: len(x)]
         pushes = None if contacts is None else contacts.pushes
         found = problem.equilibrium(shape, tensions, load, Status.CONVERGED, pushes)
         balanced = found.residual <= RESIDUAL_TOLERANCE

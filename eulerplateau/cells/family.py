@@ -29,7 +29,7 @@ from eulerplateau.cells.solving import solve_cell
 from eulerplateau.cells.touching import touches
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers import Status
+from eulerplateau.solvers import Status, TangentModel
 from eulerplateau.threads import one_thread, stepwise
 
 PARAMETERS = "load", "stiffness"
@@ -83,7 +83,7 @@ class CellFamily:
         """Return the family good where edges are as short as those of a loop (n, 2)."""
         return replace(self, edge=shortest_edge(x))
 
-    def rests(self, point: BranchPoint) -> bool:
+    def rests(self, model: TangentModel, value: float) -> bool:
         """Return True: nothing of a film in the plane turns."""
         return True
 

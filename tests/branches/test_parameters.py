@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from eulerplateau.branches import BIFURCATION, FilmFamily, FilmPoint, explore
 from eulerplateau.branches.film_family import family_near
 from eulerplateau.errors import SpecError
-from eulerplateau.solvers import Problem, solve, sweep
+from eulerplateau.solvers import RESIDUAL_TOLERANCE, Problem, solve, sweep
 from tests.helpers import shapes
 from tests.solvers.test_twist import ROUND, critical_link, disk
 
@@ -123,6 +123,17 @@ def test_a_branch_in_link_goes_through_zero_and_is_even() -> None:
     np.testing.assert_allclose(energy(-links[inside]), energies[inside], rtol=1e-7)
     assert abs(writhes[0]) > 0.005
     assert np.interp(0.1, links, writhes) == pytest.approx(-writhes[0], rel=0.02)
+
+
+def test_forces_balance_at_every_point_though_its_film_leaves_the_plane_by_and_by() -> None:
+    """No branch point is where a turned loop's flat film begins to curve."""
+    points, triangles = shapes.disk_points(4)
+    mesh = shapes.mesh_of(points * [2.0, 1.0], triangles)
+    problem = Problem(mesh, "area", twist_ratio=0.7)
+    found = explore(problem, (0.0, 0.3), parameter="link", load=1700.0, special_points=0)
+    films = [point.equilibrium for point in found]
+    assert np.ptp(films[-1].shape.x[:, 2]) > 0.01
+    assert max(film.residual for film in films) <= RESIDUAL_TOLERANCE
 
 
 def test_a_start_inside_is_left_both_ways_at_the_loops_own_link() -> None:

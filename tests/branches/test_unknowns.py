@@ -11,7 +11,6 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches import (
-    BranchPoint,
     DiagramPoint,
     Family,
     FilmFamily,
@@ -22,7 +21,7 @@ from eulerplateau.branches import (
 )
 from eulerplateau.branches.film_family import family_near
 from eulerplateau.loop import Constraint, LoopEnergy, Term
-from eulerplateau.solvers import Problem, solve
+from eulerplateau.solvers import Problem, TangentModel, solve
 from tests.helpers import shapes
 
 WINDOW = 800.0, 950.0
@@ -108,7 +107,7 @@ class FamilyInColumn:
     def near(self, y: FloatArray) -> Family:
         return self
 
-    def rests(self, point: BranchPoint) -> bool:
+    def rests(self, model: TangentModel, value: float) -> bool:
         return True
 
     def released(self, y: FloatArray) -> Family:

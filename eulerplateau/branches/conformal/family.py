@@ -33,7 +33,14 @@ from eulerplateau.exact.conformal import (
     make_basis,
 )
 from eulerplateau.loop import LoopEnergy, Term
-from eulerplateau.solvers import Columns, Stability, spectrum_of, stability, tangent_model
+from eulerplateau.solvers import (
+    Columns,
+    Stability,
+    TangentModel,
+    spectrum_of,
+    stability,
+    tangent_model,
+)
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,7 @@ class SmoothFamily:
         """Return itself: harmonics are good near every loop."""
         return self
 
-    def rests(self, point: BranchPoint) -> bool:
+    def rests(self, model: TangentModel, value: float) -> bool:
         """Return True."""
         return True
 

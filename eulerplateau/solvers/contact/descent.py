@@ -93,7 +93,7 @@ class ContactDescent:
 
     @cached_property
     def _everywhere(self) -> Everywhere:
-        return Everywhere(self.energy, self.strands)
+        return Everywhere(self.energy, self.strands, at_rounding)
 
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""

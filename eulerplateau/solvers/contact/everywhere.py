@@ -12,6 +12,7 @@ it began with. Its own are as many, or fewer, and nearer to each other at the en
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,8 +23,12 @@ from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, LoopEnergy, Strands, from_one_strand, with_gaps_held
 from eulerplateau.solvers.contact.keeping import CHANGES, Touching
 from eulerplateau.solvers.contact.program import Program
-from eulerplateau.solvers.descent import at_rounding
-from eulerplateau.solvers.second_variation import loosened, stability, tangent_model
+from eulerplateau.solvers.second_variation import (
+    TangentModel,
+    loosened,
+    stability,
+    tangent_model,
+)
 from eulerplateau.solvers.trust_region import FIRST_RADIUS
 
 # By which part of the diameter strands may overlap. A place is not held beside another that
@@ -37,10 +42,11 @@ _STEPS = 40
 
 @dataclass(frozen=True)
 class Everywhere:
-    """How strands are kept apart wherever they are near."""
+    """How strands are kept apart everywhere; `at_rest` says where forces balance."""
 
     energy: LoopEnergy
     strands: Strands
+    at_rest: Callable[[TangentModel], bool]
 
     def settled(self, state: Touching) -> Touching | None:
         """Return the minimum next to a state near rest on which no strands overlap.
@@ -56,7 +62,7 @@ class Everywhere:
             if found is None:
                 break
             overlaps = self._overlaps(found)
-            if not len(overlaps) and at_rounding(found.model) and self._pushes(found):
+            if not len(overlaps) and self.at_rest(found.model) and self._pushes(found):
                 return found if stability(found.model).n_unstable == 0 else None
             known = known.joined(overlaps[self.strands.unlike(overlaps, known, _BESIDE)])
             found = self._after_step(found, known, closes=len(overlaps) > 0)

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy
-from eulerplateau.solvers import TangentModel
 
 
 class Family(Protocol):
@@ -38,8 +37,8 @@ class Family(Protocol):
     def near(self, x: FloatArray) -> Family:
         """Return the family made anew at a loop x (n, d), or itself."""
 
-    def rests(self, model: TangentModel, value: float) -> bool:
-        """Return whether forces balance at a point's model, as at an equilibrium."""
+    def rests(self, model: Any, value: float) -> bool:
+        """Return whether forces balance at a point's TangentModel, as at an equilibrium."""
 
     def released(self, x: FloatArray) -> Family:
         """Return the family whose film is free to move inside its surface, if it can be."""

@@ -12,6 +12,7 @@ import pytest
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import SpecError
+from eulerplateau.exact.planar import planar_film
 from eulerplateau.loop import strands_of
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import Equilibrium, Problem, Status, lowest_modes, solve
@@ -41,9 +42,13 @@ def eight(film: str, diameter: float, rings: int = 8) -> Equilibrium:
     return solve(Problem(mesh, film, diameter=diameter), LOADS[film], crossed(mesh))
 
 
-@pytest.mark.parametrize("film", LOADS)
-def test_strands_that_touch_push_with_the_energy_s_slope_in_the_diameter(film: str) -> None:
-    found = eight(film, 0.02)
+@pytest.mark.parametrize(
+    ("film", "d"), [("springs", 0.02), ("dirichlet", 0.02), ("area", 0.02), ("area", 0.03)]
+)
+def test_strands_that_touch_push_with_the_energy_s_slope_in_the_diameter(
+    film: str, d: float
+) -> None:
+    found = eight(film, d)
     assert found.is_minimum
     assert found.residual < 1e-7
     assert found.contacts is not None
@@ -56,12 +61,17 @@ def test_strands_that_touch_push_with_the_energy_s_slope_in_the_diameter(film: s
         problem = Problem(disk(), film, diameter=diameter)
         near = solve(problem, LOADS[film], found)
         assert near.is_minimum
+        # Others would be another film.
+        assert np.array_equal(near.shape.triangles, found.shape.triangles)
         return near.energy
 
-    step = 4e-4
-    wide = (energy(0.02 + step) - energy(0.02 - step)) / (2 * step)
-    near = (energy(0.02 + step / 2) - energy(0.02 - step / 2)) / step
-    assert found.contacts.force == pytest.approx((4 * near - wide) / 3, rel=1e-5)
+    step = 1e-4
+    wide = (energy(d + step) - energy(d - step)) / (2 * step)
+    near = (energy(d + step / 2) - energy(d - step / 2)) / step
+    # A curved film is no minimum along itself: vertices that move there do some work.
+    refined = len(found.shape.x) > disk().n_v
+    within = found.film_residual if refined else 1e-5
+    assert found.contacts.force == pytest.approx((4 * near - wide) / 3, rel=within)
 
 
 @pytest.mark.parametrize("film", LOADS)
@@ -102,7 +112,8 @@ def test_along_a_line_of_contact_strands_push_as_hard_as_the_film_pulls(
 ) -> None:
     """On a straight strand sigma per length; the ends carry the rod's shear force as well.
 
-    So far from the middle forces sum up to sigma s, to what the film pulls an edge with.
+    So far from the middle forces sum up to sigma s, to what the film pulls between places
+    next to each other; and all of them to the exact film's.
     """
     _, found = flat
     assert found.is_minimum
@@ -112,13 +123,15 @@ def test_along_a_line_of_contact_strands_push_as_hard_as_the_film_pulls(
     order = np.argsort(contacts.s)
     forces, places = contacts.forces[order], contacts.s[order]
     middle = forces @ places / forces.sum()
-    edge = 1 / len(found.shape.loop)
     above = forces.cumsum() - forces.sum() / 2
     inside = slice(2, -2)
-    assert np.ptp(places[inside]) > 2 * edge
+    spacing = np.diff(places).max()
+    assert np.ptp(places[inside]) > 2 * spacing
     for sums in (above, above - forces):
         off = sums - 6000.0 * (places - middle)
-        assert np.abs(off[inside]).max() < 1.01 * 6000.0 * edge
+        assert np.abs(off[inside]).max() < 6000.0 * spacing
+    exact = planar_film(2, 6000.0, 0.05)
+    assert contacts.force == pytest.approx(exact.contact_force, rel=0.01)
 
 
 def test_a_line_of_contact_is_the_same_whatever_the_way_there(

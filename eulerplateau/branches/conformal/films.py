@@ -25,7 +25,7 @@ from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
 from eulerplateau.branches.conformal.with_rod import WithRod
-from eulerplateau.branches.point import BranchPoint, ahead, point_near
+from eulerplateau.branches.point import BranchPoint, ahead, first_point, point_near
 from eulerplateau.errors import SpecError
 from eulerplateau.exact import finite
 from eulerplateau.exact.conformal import (
@@ -38,6 +38,7 @@ from eulerplateau.exact.conformal import (
 )
 
 _ROUND_HARMONICS = 16
+_MOST_MODES = 240
 _FOUND = 1e-13
 
 # Neighbours on a branch, and what is looked for between them.
@@ -236,15 +237,20 @@ def _with_rod(point: BranchPoint, values: Mapping[str, float]) -> BranchPoint:
 
 
 def _flat_disk(values: Mapping[str, float]) -> BranchPoint:
-    """Return the disk, which is in equilibrium at every link."""
-    turns = math.ceil(values["twist_ratio"] * abs(values["link"]))
-    basis = make_basis(_ROUND_HARMONICS + 2 * turns, TWISTED)
+    """Return the disk, which is in equilibrium at every load and link.
+
+    All modes n that yield are held: m = (C/B) |Lk| and nu = sigma_hat / 16 pi^3 leave stable
+    those of n > sqrt(nu) + m + 1, as (n^2 - 1 - nu) (1 - nu / (n (n + 1))) > m^2 there.
+    """
+    nu = values["load"] / (16 * math.pi**3)
+    modes = math.ceil(math.sqrt(nu) + values["twist_ratio"] * abs(values["link"]))
+    if modes > _MOST_MODES:
+        problem = f"its unstable modes may have up to {modes:.4g} waves, of which"
+        raise NoFilmError(f"{problem} {_MOST_MODES} are counted")
+    basis = make_basis(_ROUND_HARMONICS + modes, TWISTED)
     family = SmoothFamily(basis, values)
     flat = family.unknowns.x(disk(basis, values["load"]).coefficients)
-    found = point_near(family, flat, values["load"])
-    if found is None:
-        raise NoFilmError("Newton's method fails at the disk")
-    return found
+    return first_point(family, flat, values["load"], CONTROL)
 
 
 def _measured(point: BranchPoint) -> RodFilm:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+NOT_CONVERGED_EXIT_CODE = 4
+
 
 class EulerPlateauError(Exception):
     """Base of every error a user can cause; `exit_code` is what the shell sees.
@@ -97,4 +99,18 @@ class MissingLibraryError(EulerPlateauError):
     """A library is missing; the message says which package brings it."""
 
 
-NOT_CONVERGED_EXIT_CODE = 4
+class NotConvergedError(EulerPlateauError):
+    """An equilibrium that was asked for is not found, or cannot be trusted.
+
+    `problem` is the message; `status` says it in a word, as that of a row does.
+    """
+
+    exit_code = NOT_CONVERGED_EXIT_CODE
+
+    def __init__(self, problem: str, status: str = "stalled") -> None:
+        super().__init__(problem, status)
+        self.problem = problem
+        self.status = status
+
+    def _text(self) -> str:
+        return self.problem

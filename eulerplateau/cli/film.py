@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from eulerplateau.cli.refused import refusals_as_json
+
 if TYPE_CHECKING:
     from eulerplateau.branches.conformal import Start
 
+# What is said of every film; null of one that is refused.
+_NUMBERS = ("energy", "area", "bending", "twist_energy", "writhe", "twist_moment")
 # What the command line calls the arguments of `rod_film`.
 _OPTIONS = {
     "load": "--sigma-hat",
@@ -68,8 +72,8 @@ def film(
 
     rod = sigma_hat, twist_ratio, link, rest_curvature
     try:
-        with one_thread():
-            numbers = _numbers(start, rod, diameter)
+        with one_thread(), refusals_as_json(as_json, _NUMBERS):
+            numbers = _without_minus_zero(_numbers(start, rod, diameter))
     except SpecError as error:
         key, problem = error.args
         raise SpecError(_OPTIONS.get(key, key), problem) from None
@@ -80,8 +84,6 @@ def film(
         for name, value in numbers.items():
             shown = f"{value:.15g}" if isinstance(value, float) else value
             click.echo(f"{name:{width}}  {shown}")
-    if "reason" in numbers and as_json:
-        click.echo(numbers["reason"], err=True)
     return 0 if numbers["status"] == "converged" else NOT_CONVERGED_EXIT_CODE
 
 
@@ -102,6 +104,12 @@ def _numbers(
     if rest_curvature != 0:
         raise SpecError("rest_curvature", "should be 0 with a diameter")
     return thick_eight(load, diameter, twist_ratio, link).numbers()
+
+
+def _without_minus_zero(
+    numbers: dict[str, float | int | str],
+) -> dict[str, float | int | str]:
+    return {k: v + 0.0 if isinstance(v, float) else v for k, v in numbers.items()}
 
 
 def _followed(

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from eulerplateau.cli.options import writes_to
+from eulerplateau.cli.refused import refusals_as_json
 
 _JSON = click.option(
     "--json", "as_json", is_flag=True, help="Print JSON, in full precision."
@@ -69,16 +70,16 @@ def shape(lobes: int, sigma_hat: float, diameter: float | None, as_json: bool) -
     from eulerplateau.errors import SpecError
     from eulerplateau.exact.planar import planar_film
 
+    names = ["energy", "area", "kappa_max", "kappa_min", "beta_hat"]
+    if diameter is not None:
+        names += ["contact_force", "contact_length"]
     try:
-        film = planar_film(lobes, sigma_hat, diameter)
+        with refusals_as_json(as_json, [*names, "regime"]):
+            film = planar_film(lobes, sigma_hat, diameter)
     except SpecError as error:
         key, problem = error.args
         raise SpecError(_OPTIONS.get(key, key), problem) from None
-    names = ["energy", "area", "kappa_max", "kappa_min", "beta_hat"]
-    regime = film.regime.value
-    if diameter is not None:
-        names += ["contact_force", "contact_length"]
-        regime = film.regime.contact
+    regime = film.regime.value if diameter is None else film.regime.contact
     numbers = {name: getattr(film, name) for name in names}
     if as_json:
         click.echo(json.dumps({**numbers, "regime": regime}, indent=2))

@@ -43,7 +43,7 @@ def checked_diameter(value: object) -> float:
     """Return a loop's diameter in units of its length; SpecError for anything else."""
     found = finite("diameter", value)
     if not 0 < found <= THICKEST:
-        problem = f"found {found:g}; should be above 0 and at most {THICKEST:g}"
+        problem = f"found {found}; should be above 0 and at most {THICKEST:g}"
         raise SpecError("diameter", problem)
     return found
 

@@ -22,7 +22,7 @@ from eulerplateau.interruption import heed, working_on
 from eulerplateau.loop import LEAST
 from eulerplateau.runs.inputs import make_mesh
 from eulerplateau.runs.locus_record import Asked, Locus
-from eulerplateau.runs.parameters import BENCH, LOOP_PARAMETERS
+from eulerplateau.runs.parameters import BENCH, LOOP_PARAMETERS, NEEDED
 from eulerplateau.runs.record import read_run
 from eulerplateau.runs.rows import LoadName
 from eulerplateau.runs.shape_files import read_shape
@@ -97,6 +97,10 @@ def _start(spec: RunSpec, asked: Asked) -> tuple[Problem, Known, float]:
     if run.load.column != spec.column(spec.explored):
         raise OutputError(asked.run, f"varies {run.load.text}: explore its branches anew")
     problem, load = make_problem(spec, disk).at(spec.explored, row.load, held)
+    if asked.second != "load" and asked.second not in problem.loop.parameters:
+        needed = NEEDED[asked.second]
+        what = f"loop.{asked.second} needs a run whose loop.{needed} is given, and not 0"
+        raise SpecError("--with", what)
     return problem, Known(said["kind"], shape, int(said["multiplicity"])), load
 
 

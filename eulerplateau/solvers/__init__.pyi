@@ -7,6 +7,7 @@ from .descent import (
     noise_of as noise_of,
 )
 from .equilibrium import (
+    LARGEST_LOAD as LARGEST_LOAD,
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,
     RESOLVED_TURNING as RESOLVED_TURNING,
     SOFTEST_BENDING as SOFTEST_BENDING,

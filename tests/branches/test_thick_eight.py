@@ -106,6 +106,7 @@ def test_command_says_what_is_no_eight_in_contact():
     eight = ["film", "--start", "eight", "--sigma-hat", "1700", "--json", "--diameter"]
     opens = run_here(*eight, "0.1")
     assert (opens.returncode, json.loads(opens.stdout)["status"]) == (4, "opens")
+    assert json.loads(opens.stdout)["problem"] in opens.stderr
     assert "higher load" in opens.stderr
     for wrong in (("0",), ("0.2",), ("0.05", "--link", "1"), ("0.05", "--start", "disk")):
         refused = run_here(*eight, *wrong)

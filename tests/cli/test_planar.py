@@ -127,7 +127,10 @@ def test_a_loop_that_is_too_thick_ends_with_four() -> None:
     assert isinstance(result.exception, EulerPlateauError)
     assert result.exception.exit_code == 4
     assert str(result.exception).startswith("too_thick: ")
-    assert result.stdout == ""
+    said = json.loads(result.stdout)
+    assert (said["status"], said["problem"]) == ("too_thick", str(result.exception))
+    assert said["energy"] is said["regime"] is None
+    assert CliRunner().invoke(planar, arguments[:-1]).stdout == ""
 
 
 @pytest.mark.parametrize("arguments", [["shape", "--n", "two"], ["shape"], ["figures"]])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from eulerplateau import exact
-from eulerplateau.errors import EulerPlateauError, SpecError
+from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError, SpecError
 from eulerplateau.exact.conformal import flat_eight
 
 ANGLES = 2 * pi * np.arange(96) / 96
@@ -122,6 +122,7 @@ def test_branches_that_end_raise_the_projects_error() -> None:
     from eulerplateau.exact.conformal import BranchError
 
     assert issubclass(BranchError, EulerPlateauError)
+    assert BranchError.exit_code == NOT_CONVERGED_EXIT_CODE
 
 
 @pytest.mark.parametrize("load", [-1.0, nan, inf, None])

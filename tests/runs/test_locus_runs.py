@@ -131,6 +131,7 @@ def test_ctrl_c_leaves_the_points_so_far(
     [
         (("--point", 7, "--with", "load"), "found 7"),
         (("--point", 0, "--with", "loop.link"), "vary already"),
+        (("--point", 0, "--with", "loop.rest_curvature"), "loop.rest_curvature is given"),
         (("--point", 0, "--with", "load", "--from", 900), "does not hold 500"),
         (("--point", 0, "--with", "load", "--branches", "nowhere"), "nowhere"),
     ],

@@ -88,10 +88,9 @@ class ThickEight(WithRod):
         return reasons.get(self.status)
 
     def numbers(self) -> dict[str, float | int | str]:
-        """Return what is said of it, by names; of no equilibrium only why it is none."""
-        refusal = self.refusal
-        if refusal is not None:
-            return {"diameter": self.diameter, "status": self.status, "reason": refusal}
+        """Return what is said of it; raises NoFilmError if it is no equilibrium."""
+        if self.refusal is not None:
+            raise NoFilmError(self.refusal, self.status)
         return {
             **self.parts(),
             "waist": self.diameter,
@@ -147,10 +146,22 @@ def reached(start: Touching, values: Mapping[str, float], step: float = FIRST) -
     """Return the film at other values; raises NoFilmError if it is not found."""
     *_, found = start, *way(start, values, step)
     if found.values != values:
-        opens = "; it opens before" if found.force < 0 else ""
         problem = "Newton's method finds no film with one point of contact"
-        raise NoFilmError(f"{problem} at sigma_hat = {values['load']:g}{opens}")
+        how, status = _lost(start, found)
+        where = f"sigma_hat = {values['load']:g}"
+        raise NoFilmError(f"{problem} at {where}{how}", status)
     return found
+
+
+def _lost(start: Touching, last: Touching) -> tuple[str, str]:
+    """Return what has become of films on a way that ends with the last one; a status."""
+    if last is not start and last.force < 0:
+        return "; it opens before", "opens"
+    at = "sigma_hat = {load:g}, twist ratio {twist_ratio:g}, link {link:g}"
+    at = at.format(**last.values)
+    if last.convexity <= 0:
+        return f"; one point is not enough at {at} already", "splits"
+    return f"; the last on the way there is at {at}", "stalled"
 
 
 def refined(film: Touching) -> tuple[Touching, Touching]:

@@ -12,7 +12,7 @@ from eulerplateau.branches.conformal.resolution import resolved
 from eulerplateau.branches.continuation import Place, next_place
 from eulerplateau.branches.control import StepControl
 from eulerplateau.branches.point import BranchPoint, ahead, first_point, point_near
-from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
+from eulerplateau.errors import NotConvergedError
 from eulerplateau.exact.conformal import LOBED, Basis, make_basis, welded_basis
 
 # The tail of films on the way to the one asked for.
@@ -21,10 +21,8 @@ _ON_THE_WAY = 1e-6
 _FEWEST = 32
 
 
-class NoFilmError(EulerPlateauError):
+class NoFilmError(NotConvergedError):
     """There is no film of a branch where it is asked for, or none that is resolved."""
-
-    exit_code = NOT_CONVERGED_EXIT_CODE
 
 
 def curved(
@@ -61,7 +59,7 @@ def curved(
         after = next_place(place, control)
         if after is None or after.point.value < before.value:
             problem = f"the branch folds near the rest curvature {before.value:.4g}"
-            raise NoFilmError(problem)
+            raise NoFilmError(problem, "folds")
         if after.point.value < rest_curvature:
             place = replace(after, point=resolved(after.point, control, _ON_THE_WAY))
             continue

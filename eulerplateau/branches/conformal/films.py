@@ -25,7 +25,7 @@ from eulerplateau.branches.conformal.curved import NoFilmError, curved
 from eulerplateau.branches.conformal.family import SmoothFamily, smooth_family
 from eulerplateau.branches.conformal.resolution import TAIL, resolved
 from eulerplateau.branches.conformal.with_rod import WithRod
-from eulerplateau.branches.point import BranchPoint, ahead, point_near
+from eulerplateau.branches.point import BranchPoint, ahead, first_point, point_near
 from eulerplateau.errors import SpecError
 from eulerplateau.exact import finite
 from eulerplateau.exact.conformal import (
@@ -36,8 +36,10 @@ from eulerplateau.exact.conformal import (
     make_basis,
     waist,
 )
+from eulerplateau.solvers import LARGEST_LOAD
 
 _ROUND_HARMONICS = 16
+_MOST_MODES = 240
 _FOUND = 1e-13
 
 # Neighbours on a branch, and what is looked for between them.
@@ -118,15 +120,16 @@ def rod_film(
         right = rod_film(start, load, twist_ratio, -link, rest_curvature, tell)
         return right.mirrored()
     values = {"load": load, "twist_ratio": twist_ratio, "link": link}
-    found = _straight_rod(start, values, tell)
+    if start is Start.DISK:
+        found = _flat_disk(values, rest_curvature)
+    else:
+        found = _straight_rod(start, values, tell)
     return _measured(curved(found, rest_curvature, tell) if rest_curvature else found)
 
 
 def _straight_rod(start: Start, values: Mapping[str, float], tell: Tell) -> BranchPoint:
     """Return the film that a start leads to, with a rod that is straight by nature."""
     load, twist_ratio, link = values["load"], values["twist_ratio"], values["link"]
-    if start is Start.DISK:
-        return _flat_disk(values)
     if start is Start.LOBES and load <= BUCKLING:
         exist = f"lobes exist above {BUCKLING:.6g}, where the disk buckles"
         raise SpecError("load", f"found {load:g}; {exist}")
@@ -143,8 +146,12 @@ def checked(
     """Raise SpecError for what is no number, or has no meaning."""
     if finite("load", load) == 0:
         raise SpecError("load", "found 0; should be above: no film shapes the loop then")
+    if load > LARGEST_LOAD:
+        raise SpecError("load", f"found {load:g}; should be at most {LARGEST_LOAD:g}")
     finite("twist_ratio", twist_ratio)
-    if finite("link", abs(link)) != 0 and twist_ratio == 0:
+    if not math.isfinite(link):
+        raise SpecError("link", f"found {link}; should be finite, positive or negative")
+    if link != 0 and twist_ratio == 0:
         raise SpecError("link", "needs a twist ratio: twist that costs nothing is lost")
     if finite("rest_curvature", rest_curvature) != 0 and twist_ratio == 0:
         problem = "needs a twist ratio: a rod that twists for nothing turns as it likes"
@@ -187,9 +194,9 @@ def _between(points: Iterable[BranchPoint], held: _Held) -> Neighbours:
         if min(past, value) <= held.wanted <= max(past, value):
             return before, after, held
         if abs(value - held.wanted) >= abs(past - held.wanted):
-            raise NoFilmError(f"the branch folds near {held.said(past)}")
+            raise NoFilmError(f"the branch folds near {held.said(past)}", "folds")
     closes = f"its waist is narrower than {NARROWEST:g} L beyond {held.said(value)}"
-    raise NoFilmError(f"the film pinches: {closes}")
+    raise NoFilmError(f"the film pinches: {closes}", "pinched")
 
 
 def _twisted_between(path: Iterable[BranchPoint], held: _Held) -> Neighbours:
@@ -203,18 +210,27 @@ def _twisted_between(path: Iterable[BranchPoint], held: _Held) -> Neighbours:
             break
         seen.append(point)
     else:
-        raise NoFilmError("no twisted film has no link: start from disk or lobes")
+        raise NoFilmError(_no_twisted(smooth_family(point), held), "absent")
     rises = held(point) > unheld
     if held.wanted == 0.0 or rises == (held.wanted > 0):
         return _between(chain([seen[-1], point], points), held)
     return _between(chain([point], reversed(seen)), held)
 
 
+def _no_twisted(family: SmoothFamily, held: _Held) -> str:
+    """Return what is said where no film but the flat ones has no link."""
+    where = f"sigma_hat = {family.values['load']:g}, twist ratio {held.twist_ratio:g}"
+    found = f"a rod that was not turned has no twisted film at {where}, to start from"
+    return f"{found}: start from disk or lobes, or take a lower twist ratio"
+
+
 def _located(before: BranchPoint, after: BranchPoint, held: _Held) -> BranchPoint:
     """Return the film between two neighbours that is held by what is wanted."""
 
     def at(value: float) -> BranchPoint:
-        found = ahead(before, value, CONTROL.least)
+        # From the nearer one: a neighbour may lie too far for Newton's method.
+        nearest = min(before, after, key=lambda point: abs(point.value - value))
+        found = ahead(nearest, value, CONTROL.least)
         if found is None:
             raise NoFilmError(f"Newton's method fails near the writhe {value:.4g}")
         return found
@@ -231,20 +247,31 @@ def _with_rod(point: BranchPoint, values: Mapping[str, float]) -> BranchPoint:
         SmoothFamily(smooth_family(point).basis, values), point.x, values["load"]
     )
     if found is None:
-        raise NoFilmError("Newton's method fails at the link asked for: the branch folds")
+        problem = "Newton's method fails at the link asked for: the branch folds"
+        raise NoFilmError(problem, "folds")
     return resolved(found, CONTROL)
 
 
-def _flat_disk(values: Mapping[str, float]) -> BranchPoint:
-    """Return the disk, which is in equilibrium at every link."""
-    turns = math.ceil(values["twist_ratio"] * abs(values["link"]))
-    basis = make_basis(_ROUND_HARMONICS + 2 * turns, TWISTED)
+def _flat_disk(values: Mapping[str, float], rest_curvature: float) -> BranchPoint:
+    """Return the disk, which is in equilibrium at every load and link.
+
+    All modes n that yield are held: m = (C/B) |Lk| and nu = sigma_hat / 16 pi^3 leave
+    stable those of n > sqrt(nu) + m + 1, as (n^2 - 1 - nu) (1 - nu / (n (n + 1))) > m^2
+    there. Of a rod curved by nature those of n^2 < q (q - 1) B/C yield without a film.
+
+    Raises NoFilmError where they are too many to count.
+    """
+    load, ratio = values["load"], values["twist_ratio"]
+    modes = math.sqrt(load / (16 * math.pi**3)) + ratio * abs(values["link"])
+    if rest_curvature:
+        modes += rest_curvature / math.sqrt(ratio)
+    if modes > _MOST_MODES:
+        problem = f"its unstable modes may have up to {modes:.3g} waves, of which"
+        raise NoFilmError(f"{problem} {_MOST_MODES} are counted", "unresolved")
+    basis = make_basis(_ROUND_HARMONICS + math.ceil(modes), TWISTED)
     family = SmoothFamily(basis, values)
-    flat = family.unknowns.x(disk(basis, values["load"]).coefficients)
-    found = point_near(family, flat, values["load"])
-    if found is None:
-        raise NoFilmError("Newton's method fails at the disk")
-    return found
+    flat = family.unknowns.x(disk(basis, load).coefficients)
+    return first_point(family, flat, load, CONTROL)
 
 
 def _measured(point: BranchPoint) -> RodFilm:

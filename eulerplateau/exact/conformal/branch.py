@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eulerplateau.errors import EulerPlateauError
+from eulerplateau.errors import NotConvergedError
 from eulerplateau.exact.checks import finite
 from eulerplateau.exact.conformal.basis import make_basis
 from eulerplateau.exact.conformal.equilibrium import (
@@ -31,7 +31,7 @@ _CLOSE = 1e-3  # distance from a load from which Newton's method lands on it
 BETTER = 0.5  # a refinement that does not shrink the tail by this factor is dropped
 
 
-class BranchError(EulerPlateauError):
+class BranchError(NotConvergedError):
     """A branch could not be followed to where the caller wants it."""
 
 

@@ -51,9 +51,8 @@ def two_lobes(load: float) -> ConformalFilm:
         target = way.load + float(np.clip(load - way.load, -room, room))
         way = resolve(go_to_load(way, target), _TAIL)
     if way.film.tail > _RESOLVED:
-        raise BranchError(
-            f"sigma_hat = {load:g} takes too many harmonics: waist too narrow"
-        )
+        problem = f"sigma_hat = {load:g} takes too many harmonics: waist too narrow"
+        raise BranchError(problem, "unresolved")
     return way.film
 
 

@@ -126,7 +126,8 @@ def twisted_films(narrowest: float) -> Iterator[ConformalFilm]:
         if found is None:
             step /= 2
             if step < _SHORTEST:
-                raise BranchError(f"no twisted film found beyond a waist of {exp(done):g}")
+                problem = f"no twisted film found beyond a waist of {exp(done):g}"
+                raise BranchError(problem, "unresolved")
             continue
         known.append(found)
         yield found

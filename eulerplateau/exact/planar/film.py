@@ -188,7 +188,7 @@ def _film(lobes: int, tension: float, diameter: float) -> PlanarFilm:
 
 def _too_thick(diameter: float, why: str) -> TooThickError:
     limit = f"a loop of diameter {diameter:g} L bends to 2/d = {2 / diameter:g} / L at most"
-    return TooThickError(f"too_thick: {limit}; {why}")
+    return TooThickError(f"too_thick: {limit}; {why}", "too_thick")
 
 
 def _disk(lobes: int, tension: float, diameter: float) -> PlanarFilm:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE, EulerPlateauError
+from eulerplateau.errors import NotConvergedError
 
 
-class TooThickError(EulerPlateauError):
+class TooThickError(NotConvergedError):
     """A loop would have to be bent more sharply than its diameter allows."""
-
-    exit_code = NOT_CONVERGED_EXIT_CODE
 
 
 def is_too_thick(kappa_max: float, kappa_min: float, diameter: float) -> bool:

@@ -45,11 +45,11 @@ def test_disk_of_any_load_and_link_counts_all_modes_that_yield(
 
 
 def test_ring_curved_by_nature_counts_all_modes_that_yield() -> None:
-    """Of a rod of natural curvature q, without a film, those of n^2 < q (q - 1) B/C."""
+    """Of natural curvature q, without a film, those of q (q + g) > q + g n^2, g = C/B."""
     q, ratio = 5.0, 0.1
     rod = "--twist-ratio", ratio, "--rest-curvature", q
     said = json.loads(film(1e-2, "--start", "disk", *rod).stdout)
-    yields = [n for n in range(2, 100) if n * n < q * (q - 1) / ratio]
+    yields = [n for n in range(2, 100) if q * (q + ratio) > q + ratio * n * n]
     assert said["n_unstable"] == 2 * len(yields)
 
 

@@ -257,14 +257,14 @@ def _flat_disk(values: Mapping[str, float], rest_curvature: float) -> BranchPoin
 
     All modes n that yield are held: m = (C/B) |Lk| and nu = sigma_hat / 16 pi^3 leave
     stable those of n > sqrt(nu) + m + 1, as (n^2 - 1 - nu) (1 - nu / (n (n + 1))) > m^2
-    there. Of a rod curved by nature those of n^2 < q (q - 1) B/C yield without a film.
+    there. Of a rod curved by nature those of q (q + g) > q + g n^2 yield, g = C/B.
 
     Raises NoFilmError where they are too many to count.
     """
     load, ratio = values["load"], values["twist_ratio"]
     modes = math.sqrt(load / (16 * math.pi**3)) + ratio * abs(values["link"])
     if rest_curvature:
-        modes += rest_curvature / math.sqrt(ratio)
+        modes += math.sqrt(rest_curvature * (rest_curvature + ratio) / ratio)
     if modes > _MOST_MODES:
         problem = f"its unstable modes may have up to {modes:.3g} waves, of which"
         raise NoFilmError(f"{problem} {_MOST_MODES} are counted", "unresolved")

@@ -50,7 +50,9 @@ def test_a_rod_that_resists_twist_as_bending_stays_flat_where_strands_touch(
     assert found.is_minimum
     assert np.ptp(found.shape.x_loop[:, 2]) < 1e-9
     assert found.energy == pytest.approx(flat(load).energy, rel=1e-7)
-    assert force(found) == pytest.approx(force(flat(load)), rel=1e-6)
+    # Along a line both say it by other places: a hundredth of what the mesh errs by.
+    within = 1e-6 if load == POINT else 1e-4
+    assert force(found) == pytest.approx(force(flat(load)), rel=within)
 
 
 def test_a_rod_that_does_not_resist_twist_leaves_the_plane() -> None:

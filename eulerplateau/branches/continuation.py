@@ -176,8 +176,9 @@ def recentred(point: BranchPoint, control: StepControl) -> BranchPoint:
     """
     if not point.energy.holds(point.x):
         point = _anew(point, point.family.near(point.x), control)
-    if not point.family.rests(point.model, point.value):
-        point = released(point, control)
+    if point.family.rests(point.model, point.value):
+        return point
+    point = released(point, control)
     for _ in range(_RECENTRINGS):
         if point.family.rests(point.model, point.value):
             break

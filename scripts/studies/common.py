@@ -1,4 +1,4 @@
-"""What studies share: the repository's place, meshes, processes, tables, the machine."""
+"""What studies share: place, meshes and their limits, processes, tables, the machine."""
 
 from __future__ import annotations
 
@@ -46,6 +46,12 @@ def markdown_table(rows: Iterable[Sequence[str]], words: int) -> str:
     head, *others = rows
     rule = ["---"] * words + ["---:"] * (len(head) - words)
     return "".join(f"| {' | '.join(row)} |\n" for row in (head, rule, *others))
+
+
+def extrapolated(edges: Sequence[int], values: Sequence[float]) -> float:
+    """Return the limit, by the last two: errors fall with the square of an edge."""
+    ratio = (edges[-1] / edges[-2]) ** 2
+    return (ratio * values[-1] - values[-2]) / (ratio - 1)
 
 
 def machine() -> str:

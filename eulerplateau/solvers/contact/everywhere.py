@@ -53,10 +53,9 @@ class Everywhere:
 
         None if none is found.
         """
-        found: Touching | None = replace(state, changes=CHANGES)
+        state = replace(state, changes=CHANGES)
         known = self._overlaps(state)
-        if len(known):
-            found = self._from_one_strand(replace(state, changes=CHANGES))
+        found = self._from_one_strand(state) if len(known) else state
         for _ in range(_STEPS):
             heed()
             if found is None:

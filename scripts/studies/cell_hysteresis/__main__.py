@@ -10,8 +10,8 @@ from eulerplateau.exact.cell import smooth_cells, star
 from scripts.studies.cell_hysteresis.stars import StarEnergy, star_energy
 from scripts.studies.cell_hysteresis.sweeps import End, followed, light_start, nearest
 from scripts.studies.cell_transitions.located import along_load
-from scripts.studies.cell_transitions.polygons import extrapolated, near_exact
-from scripts.studies.common import markdown_table
+from scripts.studies.cell_transitions.polygons import near_exact
+from scripts.studies.common import extrapolated, markdown_table
 
 STIFFNESSES = (100.0, 120.0)
 EDGES = [24, 48, 96]

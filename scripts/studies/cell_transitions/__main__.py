@@ -20,12 +20,8 @@ from eulerplateau.exact.cell import (
     symmetry_lost,
 )
 from scripts.studies.cell_transitions.located import along_load, first_lost, softest_lost
-from scripts.studies.cell_transitions.polygons import (
-    extrapolated,
-    inflection,
-    special_points,
-)
-from scripts.studies.common import machine, markdown_table
+from scripts.studies.cell_transitions.polygons import inflection, special_points
+from scripts.studies.common import extrapolated, machine, markdown_table
 
 Places = dict[str, tuple[float, RegularCell]]
 

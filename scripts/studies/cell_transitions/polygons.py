@@ -60,9 +60,3 @@ def inflection(adhesions: int, edges: int, ks_hat: float, guess: float) -> float
         return float(solve_cell(cell, load, ks_hat).kappa_mid.mean())
 
     return float(brentq(curvature, 0.8 * guess, 1.2 * guess, xtol=1e-9))
-
-
-def extrapolated(edges: list[int], values: list[float]) -> float:
-    """Return the limit, by the last two: errors fall with the square of an edge."""
-    ratio = (edges[-1] / edges[-2]) ** 2
-    return (ratio * values[-1] - values[-2]) / (ratio - 1)

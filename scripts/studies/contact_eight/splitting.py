@@ -8,6 +8,7 @@ from functools import cache
 from eulerplateau.branches import explore
 from eulerplateau.branches.conformal import splitting_load, thick_eight
 from eulerplateau.solvers import Problem
+from scripts.studies.common import extrapolated
 from scripts.studies.contact_eight.on_meshes import eight_on, round_disk
 
 # Diameters, with loads from which branches are followed upwards, where films without a mesh
@@ -40,9 +41,8 @@ def table() -> Iterator[list[str]]:
     """
     yield ["d", "edges", "coarse", "fine", "limit", "without a mesh"]
     for diameter, edges in MESHES:
-        coarse, fine = (on_mesh(diameter, each) for each in edges)
-        limit = fine + (fine - coarse) / ((edges[1] / edges[0]) ** 2 - 1)
+        found = [on_mesh(diameter, each) for each in edges]
         exact = splitting_load(diameter) if diameter >= KNOWN else None
         last = "-" if exact is None else f"{exact:.2f}"
-        loads = (f"{load:.2f}" for load in (coarse, fine, limit))
+        loads = (f"{load:.2f}" for load in (*found, extrapolated(edges, found)))
         yield [f"{diameter:g}", f"{edges[0]}, {edges[1]}", *loads, last]

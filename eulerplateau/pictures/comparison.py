@@ -19,6 +19,7 @@ from eulerplateau.pictures.film_pictures import FILM
 from eulerplateau.pictures.looks import (
     CROSS,
     DASHES,
+    DOTS,
     Look,
     label_of,
     legend_above,
@@ -87,7 +88,9 @@ def runs_figure(
     window = common_window(runs)
     shown, note = at_most([_shown(run, steps) for run in runs if what == "diagram"])
     width = PAGE if any(shown) or window is not None else _WIDTH
-    handles = _handles(runs)
+    # Dashes are for what is unstable, where anything is.
+    falling = DOTS if any(run.branches for run in runs) else DASHES
+    handles = _handles(runs, falling)
     heights = [_PANEL * len(panels) + _LABELS + legend_height(label_of(handles), width)]
     if any(shown):
         shapes = portrait_lines(runs, shown, kind, note)
@@ -97,7 +100,11 @@ def runs_figure(
     axes = draw_panels(
         parts[-1],
         panels,
-        [curve for number, run in enumerate(runs) for curve in _curves(run, number)],
+        [
+            curve
+            for number, run in enumerate(runs)
+            for curve in _curves(run, number, falling)
+        ],
         runs[0].load.label,
         window=window,
         margin=0.12,
@@ -119,22 +126,24 @@ def common_window(runs: Sequence[Run]) -> tuple[float, float] | None:
     return enlarged(min(low for low, _ in ends), max(high for _, high in ends), loads)
 
 
-def _curves(run: Run, number: int) -> list[Curve]:
+def _curves(run: Run, number: int, falling: Any) -> list[Curve]:
     """Return the curves of a run in the colour and with the marker of its number.
 
-    A sweep has a marker for each row; branches are smooth between theirs.
+    A sweep has a marker for each row, and where its load falls the line style `falling`;
+    branches are smooth between theirs, and dashed where unstable.
     """
     looks = tagged(number) if run.branches else style(number, len(run.rows))
+    dashes = DASHES if run.branches else falling
     look = Look(
         solid={**looks, "linestyle": "-", "linewidth": 1.2, "zorder": 3},
-        dashed={**looks, "linestyle": DASHES, "linewidth": 0.9, "zorder": 2},
+        dashed={**looks, "linestyle": dashes, "linewidth": 0.9, "zorder": 2},
         bad={**CROSS, "color": looks["color"]},
         label=run.label,
     )
     return [(series, look) for series in run.series]
 
 
-def _handles(runs: Sequence[Run]) -> list[Artist]:
+def _handles(runs: Sequence[Run], falling: Any) -> list[Artist]:
     """Return what names the runs, and the styles that occur."""
     from matplotlib.lines import Line2D
 
@@ -144,9 +153,8 @@ def _handles(runs: Sequence[Run]) -> list[Artist]:
     ]
     if any(run.branches for run in runs):
         handles.append(Line2D([], [], color="0.3", linestyle=DASHES, label="unstable"))
-    falling = dict.fromkeys(name for run in runs for name in _falling(run))
-    for name in falling:
-        handles.append(Line2D([], [], color="0.3", linestyle=DASHES, label=name))
+    for name in dict.fromkeys(name for run in runs for name in _falling(run)):
+        handles.append(Line2D([], [], color="0.3", linestyle=falling, label=name))
     if any(not row.converged for run in runs for row in run.rows):
         handles.append(Line2D([], [], color="0.3", label="not converged", **CROSS))
     return handles

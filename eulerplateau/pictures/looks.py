@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.figure import FigureBase
 
-DASHES = (0, (4, 2))
+DASHES, DOTS = (0, (4, 2)), (0, (1, 1.5))
 COLOURS = (BLUE, VERMILION, BLACK, GREEN, PURPLE, ORANGE, SKY)
 # In grey curves are told apart by these, each filled or open. Their number and that of the
 # colours have no common divisor: of 91 curves no two share both.

@@ -304,6 +304,23 @@ def test_sweep_up_and_down_and_rows_not_converged_are_told_apart(
     assert len(legend_texts(figure)) == 3
 
 
+def test_what_falls_and_what_is_unstable_are_told_apart(tmp_path: Path, mesh: Disk) -> None:
+    there = [1.0, 300.0, 600.0]
+    rows = [row_at(step, load) for step, load in enumerate(there + there[-2::-1])]
+    folders = [
+        record(tmp_path / "run", mesh, rows),
+        record(tmp_path / "of", mesh, pitchfork()),
+    ]
+    figure = runs_figure(read_runs(folders), "energy")
+    dashes = {
+        str(line.get_label()): vars(line)["_unscaled_dash_pattern"]
+        for part in figure.subfigs
+        for box in part.legends
+        for line in box.get_lines()
+    }
+    assert dashes["unstable"] != dashes["load falling"]
+
+
 @pytest.mark.parametrize("what", ["diagram", "energy", "curvature", "eigenvalue"])
 @pytest.mark.parametrize("case", ["no eigenvalues", "one row", "stalled", "infinite"])
 def test_every_run_has_a_plot(tmp_path: Path, mesh: Disk, what: str, case: str) -> None:

@@ -79,12 +79,17 @@ def loop_tube(
 def loop_stripe(x_loop: FloatArray, across: FloatArray, radius: float = LOOP_RADIUS) -> Any:
     """Return a stripe (PolyData) along the tube of `loop_tube`, from the first edge on.
 
-    It lies where directions (n_b, 3) across the edges point. It is open: where the rod was
-    welded its ends need not meet.
+    It lies where directions (n_b, 3) across the edges point, and runs from the first vertex
+    round to it. It is open: where the rod was welded its ends need not meet.
     """
     pyvista = load_pyvista()
+    ends = 1.5 * across[[0, -1]] - 0.5 * across[[1, -2]]
+    ends /= np.linalg.norm(ends, axis=1)[:, None]
     middles = 0.5 * (x_loop + np.roll(x_loop, -1, axis=0))
-    points = middles + 0.8 * radius * across
+    weld = x_loop[:1]
+    along = np.concatenate([weld, middles, weld])
+    directions = np.concatenate([ends[:1], across, ends[1:]])
+    points = along + 0.8 * radius * directions
     line = pyvista.PolyData(points, lines=np.append(len(points), np.arange(len(points))))
     return line.tube(radius=0.4 * radius, n_sides=12)
 

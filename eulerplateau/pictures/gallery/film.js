@@ -72,17 +72,24 @@ class Film {
     this.draw();
   }
 
-  // A stripe along the tube where directions across its edges point; open, as the ends of a
-  // rod that was turned need not meet where it was welded.
+  // A stripe along the tube where directions across its edges point, from the first vertex
+  // round to it; open, as the ends of a rod that was turned need not meet where it was welded.
   mark(corners, marks, radius) {
     const L = Libraries;
     this.stripe.visible = marks !== null;
     if (!marks) return;
-    const points = corners.map((corner, edge) => {
-      const across = new L.Vector3().fromArray(marks, 3 * edge).setLength(0.8 * radius);
-      const next = corners[(edge + 1) % corners.length];
-      return corner.clone().lerp(next, 0.5).add(across);
-    });
+    const n = corners.length;
+    const across = corners.map((_, edge) => new L.Vector3().fromArray(marks, 3 * edge));
+    const beyond = (edge, next) =>
+      across[edge].clone().multiplyScalar(1.5).addScaledVector(across[next], -0.5);
+    const on = (place, direction) =>
+      place.clone().add(direction.clone().setLength(0.8 * radius));
+    const points = [
+      on(corners[0], beyond(0, 1)),
+      ...corners.map((corner, edge) =>
+        on(corner.clone().lerp(corners[(edge + 1) % n], 0.5), across[edge])),
+      on(corners[0], beyond(n - 1, n - 2)),
+    ];
     const line = new L.CatmullRomCurve3(points);
     this.stripe.geometry.dispose();
     this.stripe.geometry = new L.TubeGeometry(line, 4 * points.length, 0.4 * radius, 8);

@@ -68,8 +68,8 @@ def report(cases: list[dict[str, Any]]) -> str:
     lines = [
         "# Newton against conjugate gradients",
         "",
-        f"Printed by `scripts/benchmark` on {machine()}. Seconds, median "
-        "(least-most) of the repeated runs.",
+        f"Printed by `scripts/benchmark` on {machine()}, one BLAS thread. CPU seconds, "
+        "median (least-most) of the repeated runs.",
         "",
     ]
     for task, text in (
@@ -122,12 +122,12 @@ def ratios(cases: list[dict[str, Any]]) -> list[str]:
 
 
 def whole_time(run: dict[str, Any]) -> float:
-    """Return the seconds of the whole solve, stability or kick included."""
+    """Return the CPU seconds of the whole solve, stability or kick included."""
     return float(run["seconds"])
 
 
 def to_a_millionth(run: dict[str, Any]) -> float:
-    """Return the seconds to an error of 1e-6."""
+    """Return the CPU seconds to an error of 1e-6."""
     return time_to(run["points"], 1e-6) or float("nan")
 
 
@@ -219,7 +219,7 @@ def draw(path: Path, cases: list[dict[str, Any]]) -> None:
     for ax, size in zip(axes[0], sizes, strict=True):
         ax.set_title(f"{size} vertices", fontsize=SMALL)
     figure.supxlabel(
-        "run time (s); the error is the larger one of energy and lengths", fontsize=TEXT
+        "CPU time (s); the error is the larger one of energy and lengths", fontsize=TEXT
     )
     drawn = sorted({case["solver"] for case in cases}, key=list(LOOKS).index)
     legend_above(figure, [Line2D([], [], **LOOKS[name], label=name) for name in drawn])

@@ -186,6 +186,7 @@ class Branch(Series):
         """Return a part of `values` (n,), interpolated in the arclength, not in the load.
 
         Near a pitchfork the amplitude is linear in the arclength and the load quadratic.
+        What is nowhere negative is not so between the points either, not even at a kink.
         """
         # Slow to load, and only pictures need it.
         from scipy.interpolate import CubicSpline
@@ -196,7 +197,7 @@ class Branch(Series):
         places = np.arange(_BETWEEN * (len(s) - 1) + 1) / _BETWEEN
         curve = CubicSpline(s, values[part])
         fine: FloatArray = curve(np.interp(places, np.arange(len(s)), s))
-        return fine
+        return fine if values[part].min() < 0.0 else np.maximum(fine, 0.0)
 
 
 def read_legs(rows: Sequence[Record]) -> list[Leg]:

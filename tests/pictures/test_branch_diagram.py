@@ -153,6 +153,14 @@ def test_pitchforks_are_drawn_smooth(branches: list[Branch]) -> None:
     assert np.abs(kappa - root).max() < 0.05
 
 
+def test_what_is_a_size_is_drawn_nowhere_below_zero(branches: list[Branch]) -> None:
+    """Where a branch meets a flat one the amplitude has a kink, and a spline would swing."""
+    branch = branches[1]
+    amplitude = np.maximum(np.arange(len(branch.rows)) - 2.0, 0.0)
+    for values in (amplitude, amplitude[::-1]):
+        assert branch.smooth(values, slice(0, len(values))).min() >= 0.0
+
+
 @pytest.mark.parametrize(
     "case", ["whole", "one point", "one branch", "all unstable", "folds", "no twist"]
 )

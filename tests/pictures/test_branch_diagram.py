@@ -154,7 +154,7 @@ def test_pitchforks_are_drawn_smooth(branches: list[Branch]) -> None:
 
 
 def test_what_is_a_size_is_drawn_nowhere_below_zero(branches: list[Branch]) -> None:
-    """Where a branch meets a flat one the amplitude has a kink, and a spline would swing."""
+    """Where a branch meets a flat one the amplitude has a kink: a spline would swing."""
     branch = branches[1]
     amplitude = np.maximum(np.arange(len(branch.rows)) - 2.0, 0.0)
     for values in (amplitude, amplitude[::-1]):

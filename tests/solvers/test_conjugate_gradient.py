@@ -12,8 +12,10 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.film.models import (
     area,
 )
+from eulerplateau.mesh import MeshSpec, generate
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.solvers import Problem, conjugate_gradient, solving
+from eulerplateau.settings import validate
+from eulerplateau.solvers import Problem, conjugate_gradient, displaced, solving
 from eulerplateau.solvers.equilibrium import (
     LENGTH_TOLERANCE,
     RESIDUAL_TOLERANCE,
@@ -253,6 +255,19 @@ def test_iterations_grow_no_faster_than_the_root_of_the_number_of_vertices(
         sizes.append(mesh.n_v)
         iterations.append(found.iterations)
     assert np.polyfit(np.log(sizes), np.log(iterations), 1)[0] < 0.5
+
+
+@pytest.mark.slow
+def test_forces_that_rounding_leaves_do_not_keep_it_going() -> None:
+    """Those of 324 edges are larger here than it aims at, and smaller than they need be."""
+    polygon = {"kind": "stretched-hexagon", "factor": 2.0}
+    mesh = generate(validate({"polygon": polygon, "vertices": 7500}, MeshSpec, "mesh"))
+    problem = Problem(mesh)
+    found = solving.solve(problem, 700.0, displaced(mesh, 1e-3, 1), solver="cg")
+    assert found.status is Status.CONVERGED
+    assert found.iterations < 1000
+    exact = solving.solve(problem, 700.0, found)
+    assert found.energy == pytest.approx(exact.energy, rel=1e-8)
 
 
 def test_kick_is_no_rigid_motion_it_bends_the_middle_of_the_film(oval: Disk) -> None:

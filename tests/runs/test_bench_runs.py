@@ -110,6 +110,7 @@ def test_units_make_no_other_run(mesh: Path, swept: Path, tmp_path: Path) -> Non
     assert run_sweep(same, tmp_path / "run").finished
 
 
+@pytest.mark.slow
 def test_a_sweep_in_length_is_one_in_the_load(
     mesh: Path, swept: Path, tmp_path: Path
 ) -> None:

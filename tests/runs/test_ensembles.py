@@ -406,6 +406,7 @@ def test_sweeps_and_branches_are_joined_films_and_cells_are_not(home):
         read_runs_below([home / "sweep" / "shapes"])
 
 
+@pytest.mark.slow
 def test_parquet_holds_what_csv_holds(home):
     from pyarrow import parquet
 

@@ -73,6 +73,7 @@ def test_where_the_way_is_smooth_nothing_jumps_however_long_the_steps(mesh: str)
     assert not any(film.follow({"kL3_alpha": load}).jumped for load in loads)
 
 
+@pytest.mark.slow
 def test_a_ring_jumps_beyond_michells_link_and_comes_back_later(finer: str) -> None:
     film = twisted(finer)
     before = film.follow({"link": MICHELL - 0.08})
@@ -84,6 +85,7 @@ def test_a_ring_jumps_beyond_michells_link_and_comes_back_later(finer: str) -> N
     assert back.row.converged
 
 
+@pytest.mark.slow
 def test_both_states_at_one_link_are_the_other_of_each_other(finer: str) -> None:
     film = twisted(finer)
     ring = film.follow({"link": MICHELL - 0.08})

@@ -39,6 +39,7 @@ def test_brute_force_leaves_out_what_is_near_along_the_loop() -> None:
     assert found == pytest.approx(np.sin(np.pi * apart) / np.pi, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_random_starts_end_without_overlap_or_pull_below_where_they_began() -> None:
     # One of each film; strands of the second touch at the end.
     ends = [run(case(seed)) for seed in (3, 4, 5)]

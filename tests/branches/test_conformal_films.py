@@ -119,6 +119,7 @@ def test_twist_that_costs_nothing_gives_back_known_films():
     assert off_plane.film.area == pytest.approx(same.area, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_rod_that_was_hardly_turned_writhes_in_proportion():
     """Lk - Wr = Wr E_0''(0) / (8 pi^2 C/B), up to the cube."""
     stiff = stiffness(next(films_by_writhe(1700.0))) / (8 * pi**2 * 0.7)

@@ -112,6 +112,7 @@ def test_a_descent_comes_to_the_same_film() -> None:
     assert found.energy == pytest.approx(energy(points[2]), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_energy_rises_with_the_load_by_the_area_across_kinks() -> None:
     """By Simpson's rule from point to point: a smooth piece, then the next."""
     start = QUICK()[0].point

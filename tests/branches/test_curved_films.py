@@ -171,6 +171,7 @@ def turned_once():
     return curved(point_near(family, flat, 500.0), 0.4)
 
 
+@pytest.mark.slow
 def test_film_of_a_rod_that_was_turned_once_is_stable_and_balanced():
     """q = 0.4, Lk = 1: its frame winds round it once, and there is no weld to be seen."""
     point = turned_once()
@@ -199,6 +200,7 @@ def test_disk_that_was_turned_once_gains_what_its_frame_can_take(ratio):
     assert at_none == pytest.approx(1 - 1 / (2 * ratio), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_film_of_a_rod_turned_the_other_way_is_the_mirror_image():
     left, right = (rod_film(Start.DISK, 500.0, 0.5, link, 0.3) for link in (-1.0, 1.0))
     assert left.energy == pytest.approx(right.energy, rel=1e-12)

@@ -58,6 +58,7 @@ def test_fold_is_where_the_stable_cell_ends_and_an_eigenvalue_vanishes(n):
     assert above.status is CellStatus.COLLAPSED
 
 
+@pytest.mark.slow
 def test_smooth_cells_agree_with_the_way_from_a_weak_substrate():
     for n, sigma, stiffness in [(3, 10.0, 50.0), (3, 50.0, 100.0), (5, 300.0, 200.0)]:
         one, other = smooth_cells(n, sigma, stiffness)[0], regular_cell(n, sigma, stiffness)

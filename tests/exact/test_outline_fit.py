@@ -140,6 +140,7 @@ def test_a_circle_yields_an_upper_bound() -> None:
     assert fit_outline(beyond + 0.5 * RANDOM.normal(size=circle.shape)).lobes == 2
 
 
+@pytest.mark.slow
 def test_a_racket_s_head_has_its_size() -> None:
     head = Racket().curve(np.empty(0))
     fine = head.points(np.linspace(-5.0, 5.0, 20001)).x

@@ -170,6 +170,7 @@ def test_a_flat_film_s_curves_are_zero_and_no_transition(
     assert len(others) == 2
 
 
+@pytest.mark.slow
 def test_a_bent_film_s_curve_is_left_as_it_is(sweep: Path) -> None:
     (run,) = read_runs([sweep])
     bent = panels(diagram_figure(run))[0]

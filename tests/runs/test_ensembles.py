@@ -274,6 +274,7 @@ def test_case_that_was_interrupted_goes_on(home):
     assert joined(read_runs_below([home / "out"])).unfinished == ()
 
 
+@pytest.mark.slow
 def test_shards_are_the_whole_and_what_is_collected_is_its_table(home):
     ensemble = load_ensemble(write(home, FILM.replace("[1, 2]", "[1, 2, 3]")))
     whole = run_ensemble(ensemble, home / "whole").table

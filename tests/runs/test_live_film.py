@@ -98,6 +98,7 @@ def test_both_states_at_one_link_are_the_other_of_each_other(finer: str) -> None
         assert found.row.energy == pytest.approx(state.row.energy, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_a_stable_film_comes_back_from_a_kick_and_from_the_start(mesh: str) -> None:
     film = LiveFilm(springs(mesh))
     before = film.follow({"kL3_alpha": 300.0})

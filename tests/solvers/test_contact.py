@@ -258,6 +258,7 @@ def test_a_soap_film_that_passes_through_itself_is_no_equilibrium() -> None:
         assert other.classified(crossed_film).status is Status.CONVERGED
 
 
+@pytest.mark.slow
 def test_a_loop_without_a_diameter_loads_nothing_of_contact() -> None:
     code = """
 import sys

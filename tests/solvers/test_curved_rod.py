@@ -137,6 +137,7 @@ def slope(of: list[float], steps: tuple[float, float]) -> float:
     return quotients[1] + (quotients[1] - quotients[0]) / 3
 
 
+@pytest.mark.slow
 def test_the_work_of_a_turn_of_the_weld_is_2_pi_times_the_moment_there() -> None:
     problem, found = bent(0.2)
     assert found.is_minimum

@@ -30,6 +30,7 @@ def test_brute_force_finds_where_an_eight_crosses_itself(gap: float) -> None:
     assert least_distance(x, lengths, 0.1) == pytest.approx(gap, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_brute_force_leaves_out_what_is_near_along_the_loop() -> None:
     n, apart = 96, 0.05
     angle = 2 * np.pi * np.arange(n) / n

@@ -15,9 +15,7 @@ CELLS = [(2, 5.0, 20.0, 0.0), (3, 10.0, 50.0, 0.0), INFLECTED, (5, 30.0, 60.0, 8
 EDGES = (24, 48, 96)
 
 
-@pytest.mark.parametrize(
-    ("n", "sigma", "stiffness", "beta"), quick_with(CELLS[:1], CELLS)
-)
+@pytest.mark.parametrize(("n", "sigma", "stiffness", "beta"), quick_with(CELLS[:1], CELLS))
 def test_polygon_converges_to_the_exact_cell_with_order_two(n, sigma, stiffness, beta):
     exact = regular_cell(n, sigma, stiffness, beta)
     assert (exact.kappa_mid < 0) == (sigma == INFLECTED[1])

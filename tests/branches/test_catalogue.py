@@ -94,6 +94,7 @@ def test_a_soap_disk_below_its_first_threshold_is_the_only_minimum() -> None:
     assert disk.guesses[0] == 0
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_catalogue_and_calls_are_counted() -> None:
     problem = Problem(oval(3), "dirichlet")
     calls: list[None] = []

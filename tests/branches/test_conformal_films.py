@@ -27,6 +27,7 @@ from eulerplateau.exact.planar import planar_film
 from eulerplateau.solvers import tangent_model
 from tests.helpers.command import command_line, run_here
 from tests.helpers.conformal_films import twisted
+from tests.helpers.marks import quick_with
 from tests.helpers.processes import shown_at_a_terminal
 
 LOADS = (0.2, 0.5, 1.0, 1.7, 2.9)  # nu, below n^2 - 1 for n = 2, 3, 4
@@ -67,7 +68,7 @@ def film(name):
 FILMS = ["lobes", "left-handed", "soft", "unstable"]
 
 
-@pytest.mark.parametrize("name", FILMS)
+@pytest.mark.parametrize("name", quick_with(["soft"], FILMS))
 def test_rod_is_balanced_point_by_point(name):
     """F' = -sigma T with M kappa b in F; T from the surface, no gradient of ours."""
     found = film(name)
@@ -118,6 +119,7 @@ def test_twist_that_costs_nothing_gives_back_known_films():
     assert off_plane.film.area == pytest.approx(same.area, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_rod_that_was_hardly_turned_writhes_in_proportion():
     """Lk - Wr = Wr E_0''(0) / (8 pi^2 C/B), up to the cube."""
     stiff = stiffness(next(films_by_writhe(1700.0))) / (8 * pi**2 * 0.7)
@@ -125,6 +127,7 @@ def test_rod_that_was_hardly_turned_writhes_in_proportion():
     assert found.writhe == pytest.approx(1e-3 / (1 + stiff), rel=1e-4)
 
 
+@pytest.mark.slow
 def test_mirror_image_of_a_rod_turned_the_other_way():
     left, right = film("left-handed"), rod_film(Start.LOBES, 1550.0, 1.0, 0.2)
     assert left.energy == right.energy
@@ -143,6 +146,7 @@ def test_disk_is_flat_and_counts_its_unstable_modes():
     assert above.twist_energy == pytest.approx(1.6 * (2.02 * pi * yields) ** 2 / 2)
 
 
+@pytest.mark.slow
 def test_ring_without_film_loses_its_disk_as_known():
     """E_0'' tends to -8 pi^2 11/8 at no load and no writhe (rings of DNA)."""
     loads, ratios = np.array([30.0, 60.0, 90.0]), []
@@ -157,6 +161,7 @@ def test_ring_without_film_loses_its_disk_as_known():
     assert at_no_load == pytest.approx(11 / 8, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_branch_that_folds_is_refused():
     """At 1855 a rod of C/B = 0.1 snaps before a quarter of a turn."""
     with pytest.raises(NoFilmError, match="folds near the link 0"):
@@ -179,6 +184,7 @@ def test_wrong_numbers_are_named(arguments, key):
     assert error.value.key == key
 
 
+@pytest.mark.slow
 def test_twist_opens_or_presses_the_pinched_eight():
     opens, presses, rests = (
         pinched_eight(1700.0, 0.7, link).pinch for link in (0.6, 1.2, 1.0)

@@ -112,6 +112,7 @@ def test_a_descent_comes_to_the_same_film() -> None:
     assert found.energy == pytest.approx(energy(points[2]), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_energy_rises_with_the_load_by_the_area_across_kinks() -> None:
     """By Simpson's rule from point to point: a smooth piece, then the next."""
     start = QUICK()[0].point
@@ -151,6 +152,7 @@ def test_unloading_is_the_same_branch() -> None:
         assert load_of(found, here) == pytest.approx(load_of(there, other), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_flat_film_touches_where_the_polygon_does() -> None:
     """In space it is a saddle by then: stable or not makes no difference."""
     mesh = shapes.mesh_of(*shapes.disk_points(4))
@@ -185,6 +187,7 @@ def thick_film(parameter: str, load: float) -> tuple[BranchPoint, StepControl]:
     return film_point(found, problem, control, parameter), control
 
 
+@pytest.mark.slow
 def test_along_the_diameter_energy_rises_by_the_force() -> None:
     start, control = thick_film("diameter", 3600.0)
     points = [start, *(at.point for at in places(start, 4, control))]
@@ -211,6 +214,7 @@ def test_directions_in_the_diameter_are_tangents() -> None:
     assert shapes.fitted_order(steps, gaps) == pytest.approx(2.0, abs=0.1)
 
 
+@pytest.mark.slow
 def test_an_exploration_goes_on_after_a_kink_to_the_bit() -> None:
     start, _ = thick_film("load", 3100.0)
     problem, found = start.family.problem, equilibrium(start)  # type: ignore[attr-defined]

@@ -165,6 +165,7 @@ def test_no_step_where_there_is_no_branch(found: Diagram) -> None:
         assert advance(start, step, CONTROL) is None
 
 
+@pytest.mark.slow
 def test_branch_turns_by_no_more_than_37_degrees_from_point_to_point() -> None:
     """A step round a fold that turns farther is refused, though it can be corrected."""
     _, start, control = diagram.folding_branch()

@@ -54,6 +54,7 @@ def test_disk_is_lost_across_its_plane_where_the_theory_says(n, q, g):
     assert found == pytest.approx(expected, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_natural_curvature_leaves_planar_films_and_shifts_their_energy():
     flat, known = rod_film(Start.LOBES, 1600.0, 0.75, 0.0, 0.6), planar_film(2, 1600.0)
     natural = 2 * pi * 0.6
@@ -132,6 +133,7 @@ def test_saddle_of_a_curved_rod_is_stable_and_balanced():
     assert imbalance(point) < 1e-8
 
 
+@pytest.mark.slow
 def test_energy_of_the_saddle_changes_by_the_bending_it_lacks():
     """dE/dq = 2 pi (2 k0 - 2 oint k_1 ds), E along the branch by differences."""
     point, h = saddle(), 1e-3
@@ -169,6 +171,7 @@ def turned_once():
     return curved(point_near(family, flat, 500.0), 0.4)
 
 
+@pytest.mark.slow
 def test_film_of_a_rod_that_was_turned_once_is_stable_and_balanced():
     """q = 0.4, Lk = 1: its frame winds round it once, and there is no weld to be seen."""
     point = turned_once()
@@ -197,6 +200,7 @@ def test_disk_that_was_turned_once_gains_what_its_frame_can_take(ratio):
     assert at_none == pytest.approx(1 - 1 / (2 * ratio), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_film_of_a_rod_turned_the_other_way_is_the_mirror_image():
     left, right = (rod_film(Start.DISK, 500.0, 0.5, link, 0.3) for link in (-1.0, 1.0))
     assert left.energy == pytest.approx(right.energy, rel=1e-12)

@@ -200,6 +200,7 @@ def test_what_a_step_misses_the_next_one_does_not() -> None:
     assert np.sqrt(known[-1].dot(missed, missed)) < 0.05 * 1e-3 * step
 
 
+@pytest.mark.slow
 def test_a_bifurcation_that_the_second_parameter_breaks_leaves_its_folds() -> None:
     points = curve(cusp, 0.0, 0.0, 0.0, BIFURCATION)
     assert not any(point.course.symmetric for point in points)
@@ -224,6 +225,7 @@ def test_a_pitchfork_stays_and_changes_its_nature_where_its_cubic_coefficient_sa
     assert places == pytest.approx([-np.sqrt(0.5), np.sqrt(0.5)], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_where_a_curve_turns_in_the_second_parameter() -> None:
     points = curve(parabola, 0.0, 1.0, 1.0)
     p, r = np.transpose([point.values for point in points])
@@ -233,6 +235,7 @@ def test_where_a_curve_turns_in_the_second_parameter() -> None:
     np.testing.assert_allclose(place, 0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_closed_curve_ends_at_its_start_and_says_where_another_mode_is_lost() -> None:
     points = curve(circle, 0.0, 1.0, 0.0)
     assert points[-1].end == End.CLOSED
@@ -254,6 +257,7 @@ def test_two_modes_at_once_are_no_fold() -> None:
         locus_start(replace(special, multiplicity=2), "r", 0.5, (control, control))
 
 
+@pytest.mark.slow
 def test_where_folds_end_on_the_bifurcation_they_leave_their_mirror_images_begin() -> None:
     points = curve(sextic, 0.7, -(0.7**4), -2 * 0.7**2, reach=1.5)
     ordinary = [point for point in points if not point.special]

@@ -67,9 +67,9 @@ def by_curvature(n_b: int) -> FilmPoint:
 @pytest.mark.parametrize(
     ("located", "exact"),
     [
-        (by_curvature, critical_curvature()),
+        pytest.param(by_curvature, critical_curvature(), marks=pytest.mark.slow),
         (by_link, critical_link("area", NU, ROUND, 2)),
-        (by_ratio, critical_link("area", NU, 1.5, 2)),
+        pytest.param(by_ratio, critical_link("area", NU, 1.5, 2), marks=pytest.mark.slow),
     ],
 )
 def test_the_disk_is_lost_at_its_threshold_in_any_parameter_with_order_2(
@@ -88,6 +88,7 @@ def test_the_disk_is_lost_at_its_threshold_in_any_parameter_with_order_2(
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.1)
 
 
+@pytest.mark.slow
 def test_what_leaves_the_disk_ends_where_strands_meet() -> None:
     exact = critical_link("dirichlet", NU, ROUND, 2)
     problem = Problem(disk(24), "dirichlet", twist_ratio=ROUND)
@@ -103,6 +104,7 @@ def test_what_leaves_the_disk_ends_where_strands_meet() -> None:
     assert max(writhes) < 1.2
 
 
+@pytest.mark.slow
 def test_a_branch_in_link_goes_through_zero_and_is_even() -> None:
     problem = oval(twist_ratio=ROUND, link=-0.1)
     window = -0.1, 0.3
@@ -153,6 +155,7 @@ def test_a_start_inside_is_left_both_ways_at_the_loops_own_link() -> None:
     assert (again.value, again.load) == (0.1, 250.0)
 
 
+@pytest.mark.slow
 def test_an_exploration_in_link_goes_on_to_the_bit() -> None:
     problem = oval(twist_ratio=ROUND, link=-0.02)
     how = {"parameter": "link", "load": 300.0, "special_points": 0}

@@ -56,7 +56,7 @@ def cell() -> Callable[..., Iterator[Any]]:
     "exploration",
     [
         pytest.param(springs, id="springs"),
-        pytest.param(cell, id="cell"),
+        pytest.param(cell, id="cell", marks=pytest.mark.slow),
     ],
 )
 def test_exploration_goes_on_as_if_it_had_not_stopped(

@@ -105,6 +105,7 @@ def test_both_ends_of_a_branch_find_the_same_points(found: Diagram) -> None:
         assert abs(other.point.value - first.point.value) <= error
 
 
+@pytest.mark.slow
 def test_branch_arrives_at_the_interpolated_zero_of_the_loads_rate(found: Diagram) -> None:
     """Its arclength there errs by the square of the step or less, wherever the step began.
 

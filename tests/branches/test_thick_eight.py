@@ -59,7 +59,7 @@ def slope(film, name, h):
     return (45 * odd[0] - 9 * odd[1] + odd[2]) / (60 * h)
 
 
-@pytest.mark.parametrize("rod", [(0.0, 0.0), ROD])
+@pytest.mark.parametrize("rod", [(0.0, 0.0), pytest.param(ROD, marks=pytest.mark.slow)])
 def test_energy_changes_by_force_area_and_moment(rod):
     """dE/dd = F, dE/dsigma = A, dE/dLk = 2 pi M, in any basis."""
     film = touching_at(WIDE, 1700.0, *rod)
@@ -164,6 +164,7 @@ def test_strands_push_above_the_opening_load_and_pull_below(diameter, rod):
     assert abs(below + above) < 1e-2 * above
 
 
+@pytest.mark.slow
 def test_mirror_images_open_at_one_load_and_a_line_without_turns_nowhere():
     """Mirror images open at one load; without turns the strands come to lie along."""
     assert opening_load(0.1, 2 / 3, -1.0) == opening_load(0.1, 2 / 3, 1.0)

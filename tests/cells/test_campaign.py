@@ -24,6 +24,7 @@ def test_every_random_cell_ends_as_a_minimum_or_says_why_not() -> None:
             assert Status(found.status) in REASONS, number
 
 
+@pytest.mark.slow
 def test_a_random_cell_is_the_same_each_time() -> None:
     first, second = (outcome(SEED, 1) for _ in range(2))
     assert first.status == second.status

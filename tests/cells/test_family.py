@@ -39,7 +39,7 @@ def fold_of(m: int, parameter: str, window: tuple[float, float], fixed: float) -
     [
         ("load", (50.0, 60.0), 123.101, 54.536),
         pytest.param("load", (62.0, 75.0), 99.685, 68.283, marks=pytest.mark.slow),
-        ("stiffness", (110.0, 130.0), 54.536, 123.101),
+        pytest.param("stiffness", (110.0, 130.0), 54.536, 123.101, marks=pytest.mark.slow),
     ],
 )
 def test_the_fold_converges_to_that_of_a_smooth_edge_with_the_square_of_the_edges(
@@ -60,6 +60,7 @@ def diagram() -> list[CellPoint]:
     return list(points)
 
 
+@pytest.mark.slow
 def test_the_mode_of_the_fold_is_symmetric_and_that_of_the_pair_before_it_is_not(
     diagram: list[CellPoint],
 ) -> None:

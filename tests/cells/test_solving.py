@@ -19,6 +19,7 @@ from eulerplateau.cells import (
 from eulerplateau.cells.equilibrium import status_of
 from eulerplateau.errors import SpecError
 from eulerplateau.solvers import Stability, Status, tangent_model
+from tests.helpers.marks import quick_with
 from tests.helpers.polygons import order, turned, uneven as uneven_polygon
 
 POINTS = np.array([[-0.8, -0.7], [1.1, -0.5], [0.7, 0.9], [-0.5, 0.6]])
@@ -170,7 +171,7 @@ def test_what_makes_no_sense_is_refused() -> None:
         solve_cell(cell, 1.0, 1.0, max_iterations=0)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", quick_with([0, 1, 3, 5, 6, 7], range(8)))
 def test_on_any_polygon_a_cell_ends_as_a_minimum_or_says_why_there_is_none(
     seed: int,
 ) -> None:

@@ -113,6 +113,7 @@ def test_several_values_of_a_key_make_several_runs(run: Path):
     assert folders == {"run-values=20.0-ks_hat=50", "run-values=20.0-ks_hat=100"}
 
 
+@pytest.mark.slow
 def test_branches_prints_its_special_points(run: Path):
     words = ["--set", "branches.low=60", "--set", "branches.high=80"]
     words += ["--set", "branches.special_points=0", "--set", "branches.unstable_modes=0"]

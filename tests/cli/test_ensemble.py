@@ -100,6 +100,7 @@ def test_shards_are_joined_by_collect(spec: Path, tmp_path: Path) -> None:
     assert table(tmp_path / "table.csv") == table(tmp_path / "all/ensemble.csv")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_in_turn")
 def test_worst_of_all_cases_is_the_exit_code(spec: Path, tmp_path: Path) -> None:
     spec.write_text(FILM.replace("[grid]", "[grid]\nsolver.max_iterations = [1, 500]"))

@@ -59,6 +59,7 @@ def test_lines_and_a_picture(nylon: Path, tmp_path: Path) -> None:
     assert out.stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_a_circle_is_said_to_be_one(tmp_path: Path) -> None:
     path = tmp_path / "circle.csv"
     angles = np.arange(50) * 2 * pi / 50
@@ -94,6 +95,7 @@ def test_a_racket_s_head(tmp_path: Path) -> None:
     assert done.stdout.splitlines()[-1].endswith("try --racket.")
 
 
+@pytest.mark.slow
 def test_a_film_is_told_to_be_no_racket_s_head(nylon: Path) -> None:
     assert fitted(nylon)["misfit"] is False
     assert fitted(nylon, "--racket")["misfit"] is True

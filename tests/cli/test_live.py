@@ -41,6 +41,7 @@ def test_a_wrong_run_is_told_before_anything_is_served(spec: Path) -> None:
     assert "sweep.loads" in result.stderr
 
 
+@pytest.mark.slow
 def test_it_says_where_it_is_and_ends_with_a_signal(spec: Path) -> None:
     with started(command_line("live", spec, "--no-browser")) as process:
         assert process.stdout is not None

@@ -267,6 +267,7 @@ def test_mesh_command_ends_with_the_code_of_what_went_wrong(tmp_path: Path) -> N
     assert_fails(run_here("mesh", good, "-o", tmp_path / "file" / "a.vtp"), 5, "file")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "stream", [1, *(pytest.param(other, marks=pytest.mark.slow) for other in (0, 2))]
 )

@@ -13,6 +13,7 @@ from eulerplateau.errors import SpecError
 from eulerplateau.exact.cell import AreaFit, cell_radius, fit_areas
 from eulerplateau.exact.cell.area_model import AreaModel
 from scripts.studies.cell_fit.coverage import CASES, Case, coverage
+from tests.helpers.marks import quick_with
 
 SIGMA, ALPHA, REST = 2.0, 700.0, 15.0
 STIFFNESS = np.geomspace(0.3, 300.0, 9)
@@ -116,7 +117,9 @@ def reference_end(
     return float(brentq(above, best[j], outer, xtol=1e-9))
 
 
-@pytest.mark.parametrize("kind", ["known", "constant", "relative"])
+@pytest.mark.parametrize(
+    "kind", quick_with(["constant"], ["known", "constant", "relative"])
+)
 def test_intervals_end_where_an_independent_profile_says(kind: str) -> None:
     area = areas(noise=0.08)
     error = 0.08 * areas() if kind == "known" else None
@@ -208,7 +211,7 @@ def test_the_fit_is_no_worse_than_the_truth_and_prints_in_a_line() -> None:
     assert "\n" not in str(fit)
 
 
-@pytest.mark.parametrize("case", CASES, ids=str)
+@pytest.mark.parametrize("case", quick_with(CASES[-1:], CASES), ids=str)
 def test_a_few_synthetic_sets_are_fitted_and_counted(case: Case) -> None:
     for one in coverage(case, 20, seed=3):
         assert 15 <= one.held <= 20

@@ -20,6 +20,7 @@ from eulerplateau.exact.cell import (
 )
 from eulerplateau.exact.cell.side import HalfSide, rule
 from eulerplateau.exact.cell.stability import _bulge
+from tests.helpers.marks import quick_with
 
 
 def slopes(values, steps):
@@ -70,7 +71,7 @@ def test_what_moves_a_cell_as_a_whole_costs_nothing_without_springs(n):
     assert soft[0].lowest(2 if n > 3 else 1) > 0
 
 
-@pytest.mark.parametrize("n", [2, 3, 5])
+@pytest.mark.parametrize("n", quick_with([3], [2, 3, 5]))
 def test_index_within_the_symmetry_is_that_of_the_symmetric_shapes(n):
     """Beyond the fold one more wave with q = 0 is unstable than before it."""
     sigma = 2.0 * rigid_fold(n).sigma_hat
@@ -102,6 +103,7 @@ def _turned(x, n):
     return np.stack([turned.real, turned.imag], axis=-1)
 
 
+@pytest.mark.slow
 def test_cells_with_two_adhesions_stay_symmetric_and_others_do_not():
     for n in (2, 3, 4, 6):
         sigma = 3.0 * rigid_fold(n).sigma_hat
@@ -128,6 +130,7 @@ def test_stable_cell_is_where_the_polygon_goes_by_itself():
     assert np.log2(off[0] / off[1]) == pytest.approx(2.0, abs=0.05)
 
 
+@pytest.mark.slow
 def test_symmetry_lost_on_a_small_part_of_the_way_is_found():
     """Twelve adhesions: unstable, stable again and unstable as the substrate stiffens."""
     indices = [regular_cell(12, 381.0, k).n_unstable for k in (40.0, 50.0, 80.0, 90.0)]

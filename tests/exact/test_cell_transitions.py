@@ -20,6 +20,7 @@ from eulerplateau.exact.cell import (
     star,
     strongest_pull,
 )
+from tests.helpers.marks import quick_with
 
 
 @pytest.mark.parametrize("n", [2, 3, 6])
@@ -40,7 +41,7 @@ def test_sides_are_inflected_between_the_two_loads_and_nowhere_else(n):
     assert at.ks_hat == pytest.approx(stiffness, rel=1e-9)
 
 
-@pytest.mark.parametrize("n", [2, 3, 6])
+@pytest.mark.parametrize("n", quick_with([3], [2, 3, 6]))
 def test_fold_is_where_the_stable_cell_ends_and_an_eigenvalue_vanishes(n):
     """Below it there are two cells, of index 0 and 1; their eigenvalues go as the root."""
     sigma = 2.0 * rigid_fold(n).sigma_hat
@@ -57,6 +58,7 @@ def test_fold_is_where_the_stable_cell_ends_and_an_eigenvalue_vanishes(n):
     assert above.status is CellStatus.COLLAPSED
 
 
+@pytest.mark.slow
 def test_smooth_cells_agree_with_the_way_from_a_weak_substrate():
     for n, sigma, stiffness in [(3, 10.0, 50.0), (3, 50.0, 100.0), (5, 300.0, 200.0)]:
         one, other = smooth_cells(n, sigma, stiffness)[0], regular_cell(n, sigma, stiffness)
@@ -78,7 +80,7 @@ def test_two_folds_bound_the_loads_without_a_smooth_cell():
         assert at.ks_hat == pytest.approx(100.0, rel=1e-8)
 
 
-@pytest.mark.parametrize("n", [2, 3, 4, 8])
+@pytest.mark.parametrize("n", quick_with([2, 3], [2, 3, 4, 8]))
 def test_branches_reconnect_where_adhesions_are_extended_by_a_third(n):
     """There the fold's ks_hat(sigma_hat) has its minimum."""
     point = reconnection(n)
@@ -109,7 +111,7 @@ def test_line_of_folds_is_smooth_and_ends_at_infinity_both_ways():
     assert regular_cell(3, rigid_fold(3).sigma_hat * 0.99, 1e9).symmetric_index == 0
 
 
-@pytest.mark.parametrize("n", [2, 3, 4, 8])
+@pytest.mark.parametrize("n", quick_with([3], [2, 3, 4, 8]))
 def test_no_smooth_cell_that_is_pulled_touches_itself(n):
     """Half sides stay in their sector, from the circle to the slack end of the curve."""
     y = 1.3 * np.cbrt(rigid_fold(n).sigma_hat)

@@ -132,6 +132,7 @@ def test_outline_is_closed_counter_clockwise_and_has_the_area():
     np.testing.assert_allclose(places, (1 - cell.extension) * cell.adhesions(), atol=1e-12)
 
 
+@pytest.mark.slow
 def test_tight_edges_become_circular_arcs_as_the_root_of_alpha():
     """The limit alpha -> 0 with line tension: arcs of radius beta / sigma (Bischofs)."""
     arcs = arc_cell(4, 0.8, 10.0, 1.0)

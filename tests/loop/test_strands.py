@@ -155,6 +155,7 @@ def test_gaps_do_not_change_when_vertices_are_renumbered() -> None:
     )
 
 
+@pytest.mark.slow
 def test_gaps_at_points_change_by_order_4_when_the_mesh_is_shifted() -> None:
     def smallest(n: int, shift: float) -> float:
         x = tangle(3, n, shift=shift)

@@ -40,6 +40,7 @@ def moebius(n: int = 12) -> tuple[np.ndarray, np.ndarray]:
     return np.vstack([pole - across, pole + across]), np.concatenate(triangles)
 
 
+@pytest.mark.slow
 @FAST
 @SEEDS
 def test_turned_triangles_agree_again_and_the_fewer_are_turned(seed):

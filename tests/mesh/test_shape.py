@@ -82,6 +82,7 @@ def bluish(png: bytes) -> float:
     return float((image[..., 2] > image[..., 0] + 0.15).mean())
 
 
+@pytest.mark.slow
 def test_notebook_shows_the_front_of_a_film_and_its_loop(shape: Shape) -> None:
     png = shape._repr_png_()
     assert png is not None

@@ -99,6 +99,7 @@ def test_rows_that_stopped_half_way_are_no_states(sweep: Path) -> None:
     assert distinct_steps(rows, CELL.states) == []
 
 
+@pytest.mark.slow
 def test_diagrams_are_drawn_and_nothing_cut_off(sweep: Path, branches: Path) -> None:
     assert draw_diagram(sweep)
     assert draw_branches(branches)
@@ -243,6 +244,7 @@ print(*(name for name in sys.modules if name.startswith("eulerplateau")))
 """
 
 
+@pytest.mark.slow
 def test_a_film_loads_nothing_of_cells(tmp_path: Path) -> None:
     from eulerplateau.runs.table import RowWriter
     from tests.runs.test_output import ROW

@@ -27,6 +27,7 @@ from eulerplateau.pictures.portraits import at_most
 from eulerplateau.pictures.sweep_diagram import diagram_figure
 from eulerplateau.runs.noise import bend_error
 from eulerplateau.runs.record import Run, read_runs
+from tests.helpers.marks import quick_with
 from tests.helpers.plotted_runs import record, row_at, swept
 from tests.helpers.shapes import disk_points, mesh_of
 from tests.pictures.test_branch_diagram import KINDS, diagram, point
@@ -169,6 +170,7 @@ def test_a_flat_film_s_curves_are_zero_and_no_transition(
     assert len(others) == 2
 
 
+@pytest.mark.slow
 def test_a_bent_film_s_curve_is_left_as_it_is(sweep: Path) -> None:
     (run,) = read_runs([sweep])
     bent = panels(diagram_figure(run))[0]
@@ -190,7 +192,7 @@ def test_curves_are_told_apart_in_colour_and_in_grey() -> None:
     assert len(grey) == 26
 
 
-@pytest.mark.parametrize("count", [1, 4, 9])
+@pytest.mark.parametrize("count", quick_with([1, 4], [1, 4, 9]))
 def test_every_branch_has_a_look_of_its_own_that_the_legend_names(count: int) -> None:
     figure = branches_figure(branched(count))
     drawn = {tag(line) for line in curves_of(figure)}
@@ -221,7 +223,7 @@ def overlapping(texts: Sequence[Text]) -> list[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize("name", SMALL_FIGURES)
+@pytest.mark.parametrize("name", quick_with(["energy"], SMALL_FIGURES))
 def test_figures_of_small_runs_can_be_read(sweep: Path, name: str) -> None:
     """Not one text lies on another, all are as large as journals ask, none is too wide."""
     (run,) = read_runs([sweep])

@@ -164,6 +164,7 @@ def test_diagram_is_drawn(tmp_path: Path, rows: list[Row]) -> None:
     assert read_png(tmp_path / "diagram.png").std() > 0.05
 
 
+@pytest.mark.slow
 def test_diagram_that_fails_is_one_line_in_the_log(
     tmp_path: Path, rows: list[Row], caplog: pytest.LogCaptureFixture
 ) -> None:

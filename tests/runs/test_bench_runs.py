@@ -110,6 +110,7 @@ def test_units_make_no_other_run(mesh: Path, swept: Path, tmp_path: Path) -> Non
     assert run_sweep(same, tmp_path / "run").finished
 
 
+@pytest.mark.slow
 def test_a_sweep_in_length_is_one_in_the_load(
     mesh: Path, swept: Path, tmp_path: Path
 ) -> None:
@@ -135,6 +136,7 @@ def test_a_sweep_in_length_is_one_in_the_load(
     }
 
 
+@pytest.mark.slow
 def test_what_is_shown_speaks_the_unit_that_was_written(mesh: Path, swept: Path) -> None:
     run = read_run(swept)
     assert [row.load for row in run.rows] == pytest.approx([9, 10, 11, 12, 13], rel=1e-14)

@@ -21,7 +21,7 @@ from eulerplateau.runs.table import read_rows
 from eulerplateau.settings import validate
 from tests.helpers.shapes import disk_points, mesh_of
 
-LOADS = [200.0, 300.0]
+LOADS, STARTS = [200.0, 300.0], 2
 
 
 def specification(folder: Path, **film: Any) -> RunSpec:
@@ -31,7 +31,7 @@ def specification(folder: Path, **film: Any) -> RunSpec:
         "mesh": {"file": str(folder / "oval.vtp")},
         "film": film,
         "sweep": {"loads": [1.0]},
-        "catalogue": {"starts": 3, "loads": LOADS},
+        "catalogue": {"starts": STARTS, "loads": LOADS},
     }
     return validate(data, RunSpec, "test")
 
@@ -63,7 +63,7 @@ def test_counts_end_with_what_the_rows_say(result: Catalogue) -> None:
     for load in LOADS:
         rows = [row for row in result.rows if row.load == load]
         own = [line for line in lines if line["load"] == load]
-        assert [line["search"] for line in own] == [1, 2, 3]
+        assert [line["search"] for line in own] == list(range(1, STARTS + 1))
         assert own[-1]["together"] == len(rows)
         assert own[-1]["by_starts"] == sum(row.by_starts > 0 for row in rows)
         assert own[-1]["by_deflation"] == sum(row.by_deflation > 0 for row in rows)

@@ -141,6 +141,7 @@ def test_energy_rises_with_the_diameter_by_the_force(
     assert energy[2] == pytest.approx(read_run(swept).rows[1].energy, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_sweep_with_contact_goes_on_to_the_bit(
     mesh: Path, swept: Path, tmp_path: Path
 ) -> None:
@@ -169,6 +170,7 @@ def test_an_ensemble_over_the_diameter_joins_in_one_table(
     assert [line["contacts"] for line in result.table.lines] == [0, 0]
 
 
+@pytest.mark.slow
 def test_a_loop_that_is_too_thick_for_its_bends_says_so(mesh: Path, tmp_path: Path) -> None:
     (tmp_path / "run.toml").write_text(
         f'[mesh]\nfile = "{mesh}"\n[film]\nmodel = "area"\nplane = true\n'

@@ -13,6 +13,7 @@ from eulerplateau.errors import ConflictError
 from eulerplateau.mesh import mesh_polygon, write_mesh
 from eulerplateau.runs import CellRunSpec, RunSpec, run_branches, run_cell_sweep, run_sweep
 from tests.helpers.command import run_here
+from tests.helpers.marks import quick_with
 
 LOADS = [500.0, 600.0, 660.0, 700.0, 720.0]
 CELL = CellRunSpec(
@@ -55,7 +56,9 @@ def interrupted(run, folder: Path, after: int) -> None:
         run(folder, stop)
 
 
-@pytest.mark.parametrize("model", ["springs", "dirichlet", "area"])
+@pytest.mark.parametrize(
+    "model", quick_with(["dirichlet"], ["springs", "dirichlet", "area"])
+)
 def test_interrupted_sweep_ends_as_one_that_went_through(mesh, model, tmp_path):
     """To the bit: rows, shapes and their series."""
     loads = LOADS if model == "springs" else [3 * load for load in LOADS[:4]]
@@ -84,7 +87,7 @@ def test_finished_run_is_not_computed_again(mesh, tmp_path):
     assert {file: file.stat().st_mtime_ns for file in tmp_path.rglob("*.vtp")} == before
 
 
-@pytest.mark.parametrize("finished", [False, True])
+@pytest.mark.parametrize("finished", quick_with([True], [False, True]))
 def test_damaged_last_rows_are_computed_again(mesh, tmp_path, finished):
     """A row cut off by a loss of power, and a shape that is not whole."""
     spec = film(mesh, "springs", LOADS[:4] if finished else LOADS)

@@ -43,7 +43,7 @@ def disk_of(size: int) -> Iterator[None]:
     [
         pytest.param("cell", "*.vtp", id="special point's shape", marks=pytest.mark.slow),
         pytest.param("cell", "branches.csv", id="row", marks=pytest.mark.slow),
-        pytest.param("cell", ".checkpoint*", id="checkpoint"),
+        pytest.param("cell", ".checkpoint*", id="checkpoint", marks=pytest.mark.slow),
         pytest.param("sweep", "*.vtp", id="shape"),
         pytest.param("sweep", "run.json", id="run.json"),
     ],
@@ -70,6 +70,7 @@ def test_run_on_a_full_disk_ends_with_5_and_goes_on_when_there_is_room(
     assert status(tmp_path / "run") == "finished"
 
 
+@pytest.mark.slow
 def test_second_writer_of_branches_is_refused_and_disturbs_nothing(tmp_path: Path) -> None:
     second = []
 

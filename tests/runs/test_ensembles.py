@@ -274,6 +274,7 @@ def test_case_that_was_interrupted_goes_on(home):
     assert joined(read_runs_below([home / "out"])).unfinished == ()
 
 
+@pytest.mark.slow
 def test_shards_are_the_whole_and_what_is_collected_is_its_table(home):
     ensemble = load_ensemble(write(home, FILM.replace("[1, 2]", "[1, 2, 3]")))
     whole = run_ensemble(ensemble, home / "whole").table
@@ -406,6 +407,7 @@ def test_sweeps_and_branches_are_joined_films_and_cells_are_not(home):
         read_runs_below([home / "sweep" / "shapes"])
 
 
+@pytest.mark.slow
 def test_parquet_holds_what_csv_holds(home):
     from pyarrow import parquet
 

@@ -73,6 +73,7 @@ def test_where_the_way_is_smooth_nothing_jumps_however_long_the_steps(mesh: str)
     assert not any(film.follow({"kL3_alpha": load}).jumped for load in loads)
 
 
+@pytest.mark.slow
 def test_a_ring_jumps_beyond_michells_link_and_comes_back_later(finer: str) -> None:
     film = twisted(finer)
     before = film.follow({"link": MICHELL - 0.08})
@@ -84,6 +85,7 @@ def test_a_ring_jumps_beyond_michells_link_and_comes_back_later(finer: str) -> N
     assert back.row.converged
 
 
+@pytest.mark.slow
 def test_both_states_at_one_link_are_the_other_of_each_other(finer: str) -> None:
     film = twisted(finer)
     ring = film.follow({"link": MICHELL - 0.08})
@@ -96,6 +98,7 @@ def test_both_states_at_one_link_are_the_other_of_each_other(finer: str) -> None
         assert found.row.energy == pytest.approx(state.row.energy, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_a_stable_film_comes_back_from_a_kick_and_from_the_start(mesh: str) -> None:
     film = LiveFilm(springs(mesh))
     before = film.follow({"kL3_alpha": 300.0})

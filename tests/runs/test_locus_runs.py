@@ -100,6 +100,7 @@ def test_the_disk_s_threshold_over_natural_curvature(tmp_path: Path) -> None:
     np.testing.assert_allclose(loads, exact, rtol=(2 * np.pi / 24) ** 2)
 
 
+@pytest.mark.slow
 def test_ctrl_c_leaves_the_points_so_far(
     explored: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -143,6 +143,7 @@ def test_a_sweep_in_the_rigidity_has_a_column_for_it(mesh: Path, tmp_path: Path)
     assert same.rows[0].energy == pytest.approx(run.rows[1].energy, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_branches_in_link_say_so_wherever_they_are_shown(explored: Path) -> None:
     run = read_run(explored)
     assert (explored / "branches.csv").read_text().splitlines()[0].split(",") == [
@@ -188,6 +189,7 @@ class StopError(Exception):
     """What a test interrupts a run with."""
 
 
+@pytest.mark.slow
 def test_an_interrupted_branch_in_link_goes_on_to_the_bit(
     mesh: Path, explored: Path, tmp_path: Path
 ) -> None:
@@ -233,6 +235,7 @@ def test_branches_start_from_a_stored_shape_at_its_own_link(
         )
 
 
+@pytest.mark.slow
 def test_runs_in_link_are_drawn_and_not_shown_over_the_load(
     mesh: Path, swept: Path, tmp_path: Path
 ) -> None:

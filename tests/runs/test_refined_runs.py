@@ -53,6 +53,7 @@ def test_rows_say_how_many_vertices_their_films_have(mesh: Path, swept: Path) ->
     assert free.film_vertices == n_v < touching.film_vertices == after.film_vertices
 
 
+@pytest.mark.slow
 def test_a_key_keeps_films_on_their_mesh(mesh: Path, tmp_path: Path) -> None:
     film = {"model": "area", "refine": False}
     run_sweep(spec(mesh, LOADS[:2], film=film), tmp_path / "plain")

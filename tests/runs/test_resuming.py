@@ -25,6 +25,7 @@ from eulerplateau.runs import (
 )
 from eulerplateau.runs.checkpoint import CHECKPOINTS
 from tests.helpers.command import run_here
+from tests.helpers.marks import quick_with
 from tests.helpers.shapes import disk_points, mesh_of
 
 ROOT = Path(__file__).parents[2]
@@ -84,9 +85,7 @@ def interrupted(run: Callable[..., Any], spec: Any, folder: Path, after: int) ->
     assert status(folder) == "interrupted"
 
 
-@pytest.mark.parametrize(
-    "kind", ["springs", "cell", pytest.param("soap", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("kind", quick_with(["cell"], ["springs", "cell", "soap"]))
 def test_interrupted_exploration_ends_as_one_that_went_through(
     kind: str, tmp_path: Path
 ) -> None:
@@ -125,7 +124,10 @@ def copied(folder: Path, to: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    "damage", ["last checkpoint", "all checkpoints", "rows", "special"]
+    "damage",
+    quick_with(
+        ["rows", "special"], ["last checkpoint", "all checkpoints", "rows", "special"]
+    ),
 )
 def test_what_is_damaged_is_computed_again(
     left: tuple[Path, RunSpec, Path], damage: str, tmp_path: Path
@@ -182,6 +184,7 @@ def test_exploration_goes_on_elsewhere_with_a_line_that_says_so(
     assert "finished before" in again.stderr
 
 
+@pytest.mark.slow
 def test_command_goes_on_and_tells_special_points_of_both_calls(tmp_path: Path) -> None:
     path = tmp_path / "cell.toml"
     path.write_text(

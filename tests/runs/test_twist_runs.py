@@ -172,6 +172,7 @@ def test_a_natural_curvature_of_nought_is_none(mesh: Path, tmp_path: Path) -> No
     assert nought.rows[0].energy == none.rows[0].energy
 
 
+@pytest.mark.slow
 def test_branches_of_a_curved_rod_find_where_its_film_leaves_the_plane(
     mesh: Path, tmp_path: Path
 ) -> None:

@@ -240,6 +240,7 @@ def test_loop_that_its_mesh_cannot_carry_is_given_up_soon(name: str) -> None:
     assert found.iterations <= 50_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "finest", [16, pytest.param(40, marks=pytest.mark.slow)], ids=["817", "4921"]
 )

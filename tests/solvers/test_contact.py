@@ -134,6 +134,7 @@ def test_along_a_line_of_contact_strands_push_as_hard_as_the_film_pulls(
     assert contacts.force == pytest.approx(exact.contact_force, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_line_of_contact_is_the_same_whatever_the_way_there(
     flat: tuple[Problem, Equilibrium],
 ) -> None:
@@ -159,6 +160,7 @@ def test_the_force_on_a_line_of_contact_is_the_energy_s_slope_too(
     assert found.contacts.force == pytest.approx(slope, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_loop_that_bends_more_than_its_rod_can_is_too_thick() -> None:
     problem = Problem(disk(14), "area", in_plane=True, diameter=0.1)
     found = solve(problem, 2000.0)
@@ -220,6 +222,7 @@ def turned(mesh: Disk, part: float) -> FloatArray:
     return mesh.x @ turn.T @ np.diag([1.4, 0.7, 1.0]) @ turn
 
 
+@pytest.mark.slow
 def test_force_and_index_stay_when_the_mesh_is_shifted_along_the_loop() -> None:
     def spread(rings: int) -> float:
         mesh = shapes.mesh_of(*shapes.disk_points(rings))
@@ -255,6 +258,7 @@ def test_a_soap_film_that_passes_through_itself_is_no_equilibrium() -> None:
         assert other.classified(crossed_film).status is Status.CONVERGED
 
 
+@pytest.mark.slow
 def test_a_loop_without_a_diameter_loads_nothing_of_contact() -> None:
     code = """
 import sys
@@ -280,6 +284,7 @@ def welded(link: float, diameter: float, start: Equilibrium | None = None) -> Eq
     return solve(problem, 2000.0, crossed(disk()) if start is None else start)
 
 
+@pytest.mark.slow
 def test_a_rod_that_resists_twist_touches_itself_and_does_the_work_it_should() -> None:
     found = welded(0.7, 0.03)
     assert found.is_minimum

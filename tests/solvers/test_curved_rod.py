@@ -15,6 +15,7 @@ from eulerplateau.loop.writhe_kernels import tangent_area, writhe
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import Equilibrium, Problem, Status, solve, tangent_model
 from tests.helpers import shapes
+from tests.helpers.marks import quick_with
 
 RATIO = 0.75
 # k L^3 / alpha at which springs on an elongated disk are out of their plane.
@@ -136,6 +137,7 @@ def slope(of: list[float], steps: tuple[float, float]) -> float:
     return quotients[1] + (quotients[1] - quotients[0]) / 3
 
 
+@pytest.mark.slow
 def test_the_work_of_a_turn_of_the_weld_is_2_pi_times_the_moment_there() -> None:
     problem, found = bent(0.2)
     assert found.is_minimum
@@ -149,6 +151,7 @@ def test_the_work_of_a_turn_of_the_weld_is_2_pi_times_the_moment_there() -> None
     assert slope(gained, steps) == pytest.approx(work, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_the_work_of_natural_curvature_and_rigidity_is_that_of_their_parts() -> None:
     problem, found = bent(0.2)
     x, own = found.shape.x_loop, rod(problem)
@@ -176,6 +179,7 @@ def test_films_of_opposite_link_are_mirror_images() -> None:
     assert writhe(image.shape.x_loop) == expected
 
 
+@pytest.mark.slow
 def test_conjugate_gradients_come_to_newtons_film() -> None:
     problem, found = bent(0.2)
     start = found.shape.moved(1.01 * found.shape.x)
@@ -184,7 +188,7 @@ def test_conjugate_gradients_come_to_newtons_film() -> None:
     assert by_cg.energy == pytest.approx(found.energy, rel=1e-8)
 
 
-@pytest.mark.parametrize("film", ["springs", "dirichlet", "area"])
+@pytest.mark.parametrize("film", quick_with(["area"], ["springs", "dirichlet", "area"]))
 def test_many_turns_end_where_strands_meet_and_never_beyond(film: str) -> None:
     mesh = disk(48)
     x = mesh.x + 1e-3 * np.random.default_rng(1).standard_normal(mesh.x.shape)

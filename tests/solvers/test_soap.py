@@ -56,6 +56,7 @@ def test_same_film_is_reached_from_flat_rough_and_turned_starts(
         assert other.bending_energy == pytest.approx(found[0].bending_energy, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_crumpled_fine_disk_becomes_the_regular_polygon_on_its_edges() -> None:
     # Noise as large as the triangles, as the default start is on 40,000 vertices.
     mesh = shapes.mesh_of(*shapes.disk_points(23))

@@ -12,6 +12,7 @@ from eulerplateau.errors import SpecError
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import Equilibrium, Problem, Status, solve, tangent_model
 from tests.helpers import shapes
+from tests.helpers.marks import quick_with
 
 # Poisson's ratio of a round rod is (B / C) - 1: 1/3 of nylon.
 ROUND = 0.75
@@ -48,10 +49,10 @@ def lost_at(film: str, nu: float, ratio: float, n: int, n_b: int) -> float:
     ("film", "nu", "ratio", "n"),
     [
         ("area", 0.0, 1.0, 2),
-        ("area", 1.0, 0.5, 2),
-        ("area", 2.0, 2 / 3, 2),
+        pytest.param("area", 1.0, 0.5, 2, marks=pytest.mark.slow),
+        pytest.param("area", 2.0, 2 / 3, 2, marks=pytest.mark.slow),
         ("area", 2.5, 1.0, 3),
-        ("area", 1.5, 2 / 3, 4),
+        pytest.param("area", 1.5, 2 / 3, 4, marks=pytest.mark.slow),
         ("dirichlet", 1.0, 0.5, 2),
         ("dirichlet", 2.0, 1.0, 3),
     ],
@@ -147,7 +148,7 @@ def test_conjugate_gradients_come_to_newtons_film() -> None:
     assert by_cg.energy == pytest.approx(found.energy, rel=1e-8)
 
 
-@pytest.mark.parametrize("film", ["springs", "dirichlet", "area"])
+@pytest.mark.parametrize("film", quick_with(["area"], ["springs", "dirichlet", "area"]))
 def test_many_turns_end_where_strands_meet_and_never_beyond(film: str) -> None:
     mesh = disk(48)
     x = mesh.x + 1e-3 * np.random.default_rng(1).standard_normal(mesh.x.shape)
@@ -158,6 +159,7 @@ def test_many_turns_end_where_strands_meet_and_never_beyond(film: str) -> None:
     assert 0 < writhe(problem, found) < 1.2
 
 
+@pytest.mark.slow
 def test_a_large_loop_under_a_soap_film_is_lost_at_its_critical_link_too() -> None:
     mesh, nu = disk(72), 1.0
     x = mesh.x + 1e-3 * np.random.default_rng(1).standard_normal(mesh.x.shape)

@@ -30,6 +30,7 @@ def test_brute_force_finds_where_an_eight_crosses_itself(gap: float) -> None:
     assert least_distance(x, lengths, 0.1) == pytest.approx(gap, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_brute_force_leaves_out_what_is_near_along_the_loop() -> None:
     n, apart = 96, 0.05
     angle = 2 * np.pi * np.arange(n) / n
@@ -39,6 +40,7 @@ def test_brute_force_leaves_out_what_is_near_along_the_loop() -> None:
     assert found == pytest.approx(np.sin(np.pi * apart) / np.pi, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_random_starts_end_without_overlap_or_pull_below_where_they_began() -> None:
     # One of each film; strands of the second touch at the end.
     ends = [run(case(seed)) for seed in (3, 4, 5)]

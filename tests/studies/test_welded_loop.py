@@ -33,6 +33,7 @@ from scripts.studies.welded_loop.starts import FINER, End, cases, run
 EDGES = (48, 64, 96)
 
 
+@pytest.mark.slow
 def test_twist_stiffens_flat_lobes_as_much_on_meshes():
     """C/B that would keep them flat: E_0''(0) without a mesh, w K^-1 w on meshes."""
     first = next(films_by_writhe(1800.0))

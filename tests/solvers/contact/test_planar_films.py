@@ -200,6 +200,7 @@ def test_slopes_of_the_energy_are_force_and_area(film: tuple[int, float, float])
     assert found.film_energy / load == pytest.approx(slope, rel=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "film", [POINT[1], pytest.param(POINT[-1], marks=pytest.mark.slow)]
 )

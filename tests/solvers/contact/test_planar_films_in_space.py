@@ -55,6 +55,7 @@ def test_a_rod_that_resists_twist_as_bending_stays_flat_where_strands_touch(
     assert force(found) == pytest.approx(force(flat(load)), rel=within)
 
 
+@pytest.mark.slow
 def test_a_rod_that_does_not_resist_twist_leaves_the_plane() -> None:
     """The flat film balances as well, and is a saddle: its two lobes turn."""
     saddle, problem = flat(POINT), in_space(None)

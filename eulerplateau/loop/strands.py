@@ -179,13 +179,13 @@ class Strands:
         unlike: BoolArray = np.logical_not(np.any(same | turned, axis=1))
         return unlike
 
-    def distinct(self, gaps: Gaps) -> BoolArray:
-        """Return which gaps (k,) are not beside one before them."""
+    def distinct(self, gaps: Gaps, edges: float = _BESIDE) -> BoolArray:
+        """Return which gaps (k,) are not within so many edges of one before them."""
         kept = np.ones(len(gaps), dtype=bool)
         for k in range(1, len(gaps)):
             before = np.arange(len(gaps)) < k
             one = gaps[np.arange(len(gaps)) == k]
-            kept[k] = self.unlike(one, gaps[kept & before])[0]
+            kept[k] = self.unlike(one, gaps[kept & before], edges)[0]
         return kept
 
     def contacts(self, gaps: Gaps) -> IntArray:

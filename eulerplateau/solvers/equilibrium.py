@@ -64,7 +64,8 @@ _ADVICE = {
     Status.COLLAPSED: "two adhesions have met: leave one out, or make them stiffer",
     Status.TOO_THICK: "the loop bends more than a rod of its diameter can: a thinner one",
     Status.FILM_TOUCHED: "the film comes against rod or film, which nothing holds off here",
-    Status.UNRESOLVED: "the loop turns by over 30 degrees at a vertex: use a finer mesh",
+    Status.UNRESOLVED: "the loop turns by over 30 degrees at a vertex, or strands overlap "
+    "between vertices: use a finer mesh",
 }
 
 

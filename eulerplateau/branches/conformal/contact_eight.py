@@ -126,8 +126,7 @@ def thick_eight(
     if link < 0:
         return thick_eight(load, diameter, twist_ratio, -link).mirrored()
     values = {"load": load, "twist_ratio": twist_ratio, "link": link, "diameter": diameter}
-    coarse, fine = refined(touching(values))
-    return _measured(coarse, fine)
+    return measured(touching(values))
 
 
 def touching(values: Mapping[str, float]) -> Touching:
@@ -177,8 +176,9 @@ def refined(film: Touching) -> tuple[Touching, Touching]:
     return coarse, film
 
 
-def _measured(coarse: Touching, fine: Touching) -> ThickEight:
-    """Return a film with all its numbers, from two numbers of harmonics."""
+def measured(film: Touching) -> ThickEight:
+    """Return a film, stable or not, with all its numbers, by enough harmonics."""
+    coarse, fine = refined(film)
     family, point, values = fine.family, fine.point, fine.values
     film, twist = family.film(point), family.twist(point.value)
     change = abs(coarse.energy / fine.energy - 1) if coarse is not fine else math.inf

@@ -13,6 +13,7 @@ it began with. Its own are as many, or fewer, and nearer to each other at the en
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,13 +32,20 @@ from eulerplateau.solvers.second_variation import (
 )
 from eulerplateau.solvers.trust_region import FIRST_RADIUS
 
-# By which part of the diameter strands may overlap. A place is not held beside another that
-# is nearer than this, in edges.
-_OVERLAP = 1e-6
+# By which part of the diameter strands may overlap at places that are not held. One is not
+# held beside another that is nearer than this, in edges.
+OVERLAP = 1e-6
 _BESIDE = 0.02
 # Places no farther from each other than that, in edges, and from no others, are a point.
 _POINT = 0.3
-_STEPS = 40
+# Where a loop slides far along itself before it rests, its places wander as far.
+_STEPS = 200
+# With places held where they are Newton's method leads astray if these have far to wander:
+# its step is one of the program's if forces balance so many times worse after it.
+_ASTRAY = 10.0
+# Places that cannot be closed at once hang together: of those within so many edges of one
+# before them, it alone is held.
+_TOGETHER = (0.0, 0.1, 0.3, 1.0)
 
 
 @dataclass(frozen=True)
@@ -69,10 +77,7 @@ class Everywhere:
 
     def again(self, state: Touching, x: FloatArray) -> Touching | None:
         """Return what one that was settled, by another energy, comes to from near there."""
-        try:
-            found = self._at(state, x, state.gaps)
-        except LinAlgError:
-            return None
+        found = self._at(state, x, state.gaps)
         return None if found is None else self.settled(found)
 
     def _from_one_strand(self, state: Touching) -> Touching | None:
@@ -87,7 +92,7 @@ class Everywhere:
 
     def _overlaps(self, state: Touching) -> Gaps:
         """Return the places where strands overlap most, that are not held."""
-        low = self.strands.nearest(state.model.x, -_OVERLAP * self.strands.diameter)
+        low = self.strands.nearest(state.model.x, -OVERLAP * self.strands.diameter)
         low = low[self.strands.unlike(low, state.gaps, _BESIDE)]
         return from_one_strand(self.strands.knots, low, state.gaps[~state.gaps.slides])
 
@@ -100,10 +105,13 @@ class Everywhere:
         try:
             newton = state.model.newton_step(FIRST_RADIUS)
             if newton is not None and not closes and self._pushes(state):
-                return self._at(state, x + newton.moved, gaps)
+                found = self._at(state, x + newton.moved, gaps)
+                most = _ASTRAY * state.model.residual
+                if found is not None and found.model.residual <= most:
+                    return found
             others = known[self.strands.unlike(known, gaps, _BESIDE)]
-            found = self._closing(state, gaps.joined(others))
-            return None if found is None else self._at(state, *found)
+            led = self._closing(state, gaps.joined(others))
+            return None if led is None else self._at(state, *led)
         except LinAlgError:
             return None
 
@@ -140,7 +148,17 @@ class Everywhere:
         return gaps[chosen]
 
     def _at(self, state: Touching, near: FloatArray, gaps: Gaps) -> Touching | None:
-        """Return the state on the loop next to that, with gaps closed."""
+        """Return the state on the loop next to that, with gaps closed, or most of them."""
+        for edges in _TOGETHER:
+            with suppress(LinAlgError):
+                some = gaps[self.strands.distinct(gaps, edges)]
+                found = self._closed(state, near, some)
+                if found is not None:
+                    return found
+        return None
+
+    def _closed(self, state: Touching, near: FloatArray, gaps: Gaps) -> Touching | None:
+        """Return the state on the loop next to that, all gaps closed; None without one."""
         held = with_gaps_held(self.energy, self.strands, gaps)
         x = held.constraint.project(near)
         if x is None or not self.energy.holds(x):

@@ -16,7 +16,7 @@ from eulerplateau.branches.conformal import (
 from eulerplateau.exact.conformal import flat_eight
 from eulerplateau.threads import one_thread
 from scripts.studies.common import machine, markdown_table
-from scripts.studies.contact_eight import refinement, splitting
+from scripts.studies.contact_eight import refinement, splitting, unstable
 from scripts.studies.contact_eight.on_meshes import table
 
 DIAMETERS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
@@ -33,11 +33,15 @@ SPLIT = 0.02
 @click.option("--meshes", is_flag=True, help="Print the table of meshes only.")
 @click.option("--refined", is_flag=True, help="Print the table of refined meshes only.")
 @click.option("--splits", is_flag=True, help="Print where contact splits on meshes only.")
-def main(no_loads: bool, meshes: bool, refined: bool, splits: bool) -> None:
+@click.option("--saddle", is_flag=True, help="Print the table of a saddle on meshes only.")
+def main(no_loads: bool, meshes: bool, refined: bool, splits: bool, saddle: bool) -> None:
     """Print films at one load, the formula's error, meshes, then loads over diameters."""
     with one_thread():
         if splits:
             click.echo(markdown_table(splitting.table(), 0))
+            return
+        if saddle:
+            click.echo(markdown_table(unstable.table(), 0))
             return
         if refined:
             click.echo(f"{machine()}\n\n{markdown_table(refinement.table(), 0)}")

@@ -130,11 +130,12 @@ def table() -> Iterator[list[str]]:
         case = [f"{diameter:g}", f"{load:g}", f"{ratio:.2g}"]
         rows = [off(eight_on(round_disk(edges), exact), exact) for edges in EDGES]
         for row in rows:
-            yield [*case, str(row.n_b), *_shown(row.numbers), str(row.n_unstable)]
-        yield [*case, "limit", *_shown(limit(rows)), str(exact.n_unstable)]
+            yield [*case, str(row.n_b), *shown(row.numbers), str(row.n_unstable)]
+        yield [*case, "limit", *shown(limit(rows)), str(exact.n_unstable)]
         yield [*case, "order", *(f"{order:.2f}" for order in orders(rows)), ""]
 
 
-def _shown(errors: Sequence[float]) -> list[str]:
+def shown(errors: Sequence[float]) -> list[str]:
+    """Return how much energy, force and angle are off by, to be read."""
     energy, force, angle = errors
     return [f"{energy:.1e}", f"{force:.1e}", f"{angle:.4f}"]

@@ -34,7 +34,7 @@ _HARMONICS = 3
 _FLATTEST = 0.01
 # By which part of the diameter strands may overlap; which part of the largest force a
 # contact may pull with; what the energy may rise by from rounding.
-OVERLAP, PULL, RISE = 1e-3, RESIDUAL_TOLERANCE, 1e-9
+OVERLAP, PULL, RISE = 1e-5, RESIDUAL_TOLERANCE, 1e-9
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.mesh.graphs import components
 
 
 def directed_edges(triangles: IntArray) -> IntArray:
@@ -26,13 +27,8 @@ def joints(triangles: IntArray) -> tuple[IntArray, IntArray]:
 
 def pieces(triangles: IntArray) -> int:
     """Return into how many pieces triangles fall that edges of two of them join."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     one, other = joints(triangles)
-    shape = (len(triangles), len(triangles))
-    joined = coo_array((np.ones(len(one)), (one // 3, other // 3)), shape=shape)
-    return int(connected_components(joined, directed=False)[0])
+    return int(components(one // 3, other // 3, len(triangles)).max()) + 1
 
 
 def area_vectors(triangles: IntArray, x: FloatArray) -> FloatArray:

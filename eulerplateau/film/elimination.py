@@ -12,9 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.compiled import njit
 from eulerplateau.film.parts import Part, eliminate
 
 

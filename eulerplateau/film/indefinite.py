@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 from scipy.linalg import LinAlgError
 from scipy.linalg.blas import dgemm
 from scipy.linalg.lapack import dsytrf, dsytrs
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.compiled import njit
 from eulerplateau.film.elimination import Elimination
 from eulerplateau.film.solve_kernels import solve_symmetric_fronts
 

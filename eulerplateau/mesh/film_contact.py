@@ -8,9 +8,9 @@ that are nearer to each other than the tube is thick, those that hang together w
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.compiled import njit
 from eulerplateau.mesh.crossings import self_intersections
 from eulerplateau.mesh.graphs import components
 from eulerplateau.mesh.shape import Shape

@@ -19,8 +19,8 @@ from typing import Protocol
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
 from eulerplateau import film as films
+from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium, Status

@@ -54,7 +54,7 @@ class QuadraticModels(_OneMatrix):
 
 @dataclass(frozen=True)
 class SubspaceModels(_OneMatrix):
-    """A subspace of the tangent space of a large loop at a time: loaded where there is one."""
+    """A subspace of the tangent space of a large loop, loaded where there is one."""
 
     @property
     def always_classified(self) -> bool:

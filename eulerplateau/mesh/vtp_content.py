@@ -6,6 +6,7 @@ Written here and not by VTK, which takes longer to load than a short sweep to ca
 from __future__ import annotations
 
 import base64
+import struct
 import zlib
 from collections.abc import Mapping
 from functools import lru_cache
@@ -21,7 +22,7 @@ Fields = Mapping[str, NDArray[Any]]
 _KINDS = {"f": "Float", "i": "Int", "u": "UInt"}
 # The fastest of zlib's levels: coordinates hold little that can be compressed.
 _LEVEL = 1
-# Up to so many bytes are stored as they are: to set up zlib takes longer than to write them.
+# So many bytes are stored as they are: to set up zlib takes longer than to write them.
 _FEW = 2048
 _NO_CELLS = np.empty((0, 1), dtype=np.int64)
 
@@ -107,10 +108,8 @@ def _packed(content: bytes) -> str:
 def _stored(content: bytes) -> bytes:
     """Return up to 65535 bytes in zlib's format, as they are (RFC 1950, 1951 3.2.4)."""
     size = len(content)
-    head = (
-        b"\x78\x01\x01" + size.to_bytes(2, "little") + (size ^ 0xFFFF).to_bytes(2, "little")
-    )
-    return head + content + zlib.adler32(content).to_bytes(4, "big")
+    head = struct.pack("<2sBHH", b"\x78\x01", 1, size, size ^ 0xFFFF)
+    return head + content + struct.pack(">I", zlib.adler32(content))
 
 
 def _base64(content: bytes) -> str:

@@ -15,7 +15,7 @@ A small interior is one dense block (parts.py). A larger one is eliminated part 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -74,14 +74,23 @@ class Condensation:
     def _packed(
         self,
     ) -> tuple[IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray]:
-        """All parts as arrays, for solve_kernels.py."""
-        parts = self._parts
+        """All parts as arrays, for solve_kernels.py; the parts are then views of these."""
+        parts = list(self._parts)
         counts = np.array([len(part.around) for part in parts], dtype=np.int64)
         starts = np.array([part.start for part in parts], dtype=np.int64)
         stops = np.array([part.stop for part in parts], dtype=np.int64)
         sizes = (stops - starts) * (stops - starts + counts)
-        pieces = [piece.ravel("F") for part in parts for piece in (part.factor, part.half)]
         around = [part.around for part in parts]
+        data, filled = np.empty(sizes.sum()), 0
+        object.__setattr__(self, "_parts", ())  # so that they go as they are copied
+        for number, part in enumerate(parts):
+            views = []
+            for piece in (part.factor, part.half):
+                here = data[filled : (filled := filled + piece.size)]
+                views.append(here.reshape(piece.shape, order="F"))
+                views[-1][...] = piece
+            parts[number] = replace(part, factor=views[0], half=views[1])
+        object.__setattr__(self, "_parts", tuple(parts))
         none = [np.zeros(0, dtype=np.int64)]
         return (
             starts,
@@ -89,7 +98,7 @@ class Condensation:
             np.append(0, np.cumsum(counts)),
             np.concatenate(none + around),
             np.cumsum(sizes) - sizes,
-            np.concatenate([np.zeros(0), *pieces]),
+            data,
         )
 
     def carry(self, forces: FloatArray) -> FloatArray:

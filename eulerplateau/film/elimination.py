@@ -92,7 +92,7 @@ def plan(
     summed; of two that mirror each other across parts the later row's may be missing.
     """
     order = np.concatenate([*pieces, kept])
-    place = np.empty(len(order), dtype=np.int64)
+    place = np.empty(len(order), dtype=np.int32)
     place[order] = np.arange(len(order))
     row, column = place[row], place[column]
     stops = np.cumsum([*(len(piece) for piece in pieces), len(kept)], dtype=np.int64)
@@ -111,13 +111,17 @@ def plan(
         mine = entries[first[number] : first[number + 1]]
         below = [fronts[before].around for before in waiting[number]]
         touched = np.unique(np.concatenate([column[mine], *below]))
-        around = touched[np.searchsorted(touched, stop) :]
+        around = touched[np.searchsorted(touched, stop) :].astype(np.int64)
         size = stop - start + len(around)
         local[start:stop] = np.arange(stop - start)
         local[around] = np.arange(stop - start, size)
         places = local[row[mine]] * size + local[column[mine]]
+        # Numbers of half the size where they have room: there is one for every entry.
+        kind = np.int32 if max(size * size, len(row)) < 1 << 31 else np.int64
         left = [(before, local[fronts[before].around]) for before in waiting[number]]
-        fronts.append(_Front(start, stop, around, mine, places, left))
+        fronts.append(
+            _Front(start, stop, around, mine.astype(kind), places.astype(kind), left)
+        )
         if len(around):
             waiting[int(np.searchsorted(stops, around[0], side="right"))].append(number)
     return Elimination(order, tuple(fronts))

@@ -1,4 +1,4 @@
-"""Carry out a command of the command line, and print its seconds of CPU by part, as JSON.
+"""Carry out a command of the command line; write its seconds of CPU by part, as JSON.
 
 In a process of its own, since what is loaded counts: python -m ...parts FILE COMMAND ...
 """
@@ -10,13 +10,19 @@ import resource
 import sys
 import time
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import eulerplateau.pictures as pictures
+from eulerplateau import pictures
 from eulerplateau.cli import main
-from eulerplateau.runs import exploration, folder, recording, sweep
+from eulerplateau.runs import folder, recording
 
+# Of each command the module, what begins in it, and what solves.
+RUNS = {
+    "sweep": ("eulerplateau.runs.sweep", "run_sweep", "follow_steps"),
+    "branches": ("eulerplateau.runs.exploration", "run_branches", "explore"),
+}
 SPENT = dict.fromkeys(("before", "solved", "measured", "written", "drawn"), 0.0)
 
 
@@ -57,26 +63,31 @@ def begun(run: Callable[..., Any]) -> Callable[..., Any]:
     return timed
 
 
-def _print() -> None:
-    # Modules are loaded before they are needed here, but all of them would be.
-    sweep.run_sweep = begun(sweep.run_sweep)
-    exploration.run_branches = begun(exploration.run_branches)
-    sweep.follow_steps = counted("solved", sweep.follow_steps)
-    exploration.explore = counted("solved", exploration.explore)
+def watched(command: str) -> None:
+    """See to it that the time of a command's parts is counted."""
+    name, run, solve = RUNS[command]
+    module = import_module(name)
+    setattr(module, run, begun(getattr(module, run)))
+    setattr(module, solve, counted("solved", getattr(module, solve)))
     recording.tell = counted("measured", recording.tell)
-    for name in ("record", "keep", "finish"):
-        write = counted("written", getattr(folder.RunFolder, name))
-        setattr(folder.RunFolder, name, write)
-    for name in ("draw_diagram", "draw_branches"):
-        setattr(pictures, name, counted("drawn", getattr(pictures, name)))
+    for write in ("record", "keep", "finish"):
+        timed = counted("written", getattr(folder.RunFolder, write))
+        setattr(folder.RunFolder, write, timed)
+    for draw in ("draw_diagram", "draw_branches"):
+        setattr(pictures, draw, counted("drawn", getattr(pictures, draw)))
+
+
+def print_parts() -> None:
+    """Carry the command out, and write its parts to the file named first."""
     out = Path(sys.argv.pop(1))
+    watched(sys.argv[1])
     try:
         main()
     finally:
         whole = seconds()
-        SPENT["the rest"] = whole - sum(SPENT.values())
-        out.write_text(json.dumps({**SPENT, "all": whole}))
+        rest = whole - sum(SPENT.values())
+        out.write_text(json.dumps({**SPENT, "the rest": rest, "all": whole}))
 
 
 if __name__ == "__main__":
-    _print()
+    print_parts()

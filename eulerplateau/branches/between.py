@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
 
+from eulerplateau.branches.brent import zero_between
 from eulerplateau.branches.control import StepControl
 from eulerplateau.branches.point import NOISE, BranchPoint, along, correct
 
@@ -58,13 +58,7 @@ class Interval:
         try:
             if value(0.0) * value(reach) > 0:
                 return None
-            root = brentq(
-                *(value, 0.0, reach),
-                xtol=_PRECISION,
-                rtol=8.9e-16,
-                maxiter=tries or 100,
-                disp=tries is None,
-            )
+            root = zero_between(value, 0.0, reach, _PRECISION, tries=tries or 100)
             value(root)
         except ArithmeticError:
             return None

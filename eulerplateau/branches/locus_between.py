@@ -7,8 +7,7 @@ from dataclasses import replace
 from enum import StrEnum
 from functools import partial
 
-from scipy.optimize import brentq
-
+from eulerplateau.branches.brent import zero_between
 from eulerplateau.branches.control import Motion
 from eulerplateau.branches.locus_point import LocusPoint
 from eulerplateau.branches.normal_form import NO_PART, part_along
@@ -135,9 +134,11 @@ def _located(
         return test(known[part])
 
     try:
-        root = brentq(value, 0.0, 1.0, xtol=precision / reach)
+        if value(0.0) * value(1.0) > 0:
+            return None
+        root = zero_between(value, 0.0, 1.0, precision / reach)
         value(root)
-    except (ArithmeticError, ValueError):
+    except ArithmeticError:
         return None
     along = root * (after.arclength - before.arclength)
     return replace(known[root], arclength=before.arclength + along)

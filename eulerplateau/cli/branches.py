@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import click
 
 from eulerplateau.cli.batch import GOES_ON, OVERWRITE, QUIET, before, begin
-from eulerplateau.cli.compiling import telling_of_compiling
 from eulerplateau.cli.options import writes_to
 from eulerplateau.cli.overrides import load_single, setting, single_values
+from eulerplateau.compiling import telling_of_compiling
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:

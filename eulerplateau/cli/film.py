@@ -119,7 +119,7 @@ def _followed(
     from tqdm import tqdm
 
     from eulerplateau.branches.conformal import rod_film
-    from eulerplateau.cli.compiling import telling_of_compiling
+    from eulerplateau.compiling import telling_of_compiling
 
     with tqdm(
         desc=start.value, unit="film", dynamic_ncols=True, disable=None, leave=False

@@ -8,9 +8,9 @@ from pathlib import Path
 import click
 
 from eulerplateau.cli.batch import begin
-from eulerplateau.cli.compiling import telling_of_compiling
 from eulerplateau.cli.options import writes_to
 from eulerplateau.cli.overrides import load_single, setting, single_values
+from eulerplateau.compiling import telling_of_compiling
 from eulerplateau.interruption import working_on
 
 # Seconds after the last page has closed.

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eulerplateau.cli.batch import OVERWRITE, QUIET, begin
-from eulerplateau.cli.compiling import telling_of_compiling
 from eulerplateau.cli.options import writes_to
 from eulerplateau.cli.overrides import load_single, setting, single_values
+from eulerplateau.compiling import telling_of_compiling
 
 if TYPE_CHECKING:
     from eulerplateau.runs import Asked, Locus, RunSpec

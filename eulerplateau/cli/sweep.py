@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import click
 
 from eulerplateau.cli.batch import OVERWRITE, RESUME, before, begin, carried_out
-from eulerplateau.cli.compiling import telling_of_compiling
 from eulerplateau.cli.options import offered, offered_settings, writes_to
 from eulerplateau.cli.overrides import parse_setting
+from eulerplateau.compiling import telling_of_compiling
 from eulerplateau.errors import NOT_CONVERGED_EXIT_CODE
 
 if TYPE_CHECKING:

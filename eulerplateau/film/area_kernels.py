@@ -7,9 +7,9 @@ next. Arrays in, arrays out; what sums into an array expects zeros there.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.compiled import njit
 
 
 @njit(cache=True)

@@ -9,22 +9,27 @@ With the Laplacian split into interior (i) and loop (b),
 S is the discrete Dirichlet-to-Neumann map; a relaxed film has the energy
 load * tr(x_b^T S x_b).
 
-The interior is eliminated part by part, see elimination.py.
+A small interior is one dense block (parts.py). A larger one is eliminated part by part
+(elimination.py), by compiled loops: they are loaded where there is one.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csc_array
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.dissection import dissect
-from eulerplateau.film.elimination import Elimination, Part, plan
-from eulerplateau.film.solve_kernels import solve_fronts
+from eulerplateau.film.parts import Part, eliminate
 from eulerplateau.threads import one_thread
+
+if TYPE_CHECKING:
+    from eulerplateau.film.elimination import Elimination
+
+# Up to this many vertices inside are eliminated at once.
+_DENSE = 512
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,8 @@ class Condensation:
 
         Those are the rows 0 ... n_i - 1.
         """
+        from eulerplateau.film.solve_kernels import solve_fronts
+
         n_i = len(forces)
         order = self._order[:n_i]
         columns = np.zeros((forces.size // n_i, len(self._order)))
@@ -67,14 +74,23 @@ class Condensation:
     def _packed(
         self,
     ) -> tuple[IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray]:
-        """All parts as arrays, for solve_kernels.py."""
-        parts = self._parts
+        """All parts as arrays, for solve_kernels.py; the parts are then views of these."""
+        parts = list(self._parts)
         counts = np.array([len(part.around) for part in parts], dtype=np.int64)
         starts = np.array([part.start for part in parts], dtype=np.int64)
         stops = np.array([part.stop for part in parts], dtype=np.int64)
         sizes = (stops - starts) * (stops - starts + counts)
-        pieces = [piece.ravel("F") for part in parts for piece in (part.factor, part.half)]
         around = [part.around for part in parts]
+        data, filled = np.empty(sizes.sum()), 0
+        object.__setattr__(self, "_parts", ())  # so that they go as they are copied
+        for number, part in enumerate(parts):
+            views = []
+            for piece in (part.factor, part.half):
+                here = data[filled : (filled := filled + piece.size)]
+                views.append(here.reshape(piece.shape, order="F"))
+                views[-1][...] = piece
+            parts[number] = replace(part, factor=views[0], half=views[1])
+        object.__setattr__(self, "_parts", tuple(parts))
         none = [np.zeros(0, dtype=np.int64)]
         return (
             starts,
@@ -82,7 +98,7 @@ class Condensation:
             np.append(0, np.cumsum(counts)),
             np.concatenate(none + around),
             np.cumsum(sizes) - sizes,
-            np.concatenate([np.zeros(0), *pieces]),
+            data,
         )
 
     def carry(self, forces: FloatArray) -> FloatArray:
@@ -145,19 +161,51 @@ def factorise(elimination: Elimination, entries: FloatArray) -> Condensation:
     return Condensation(stiffness, elimination.order, parts)
 
 
-def condense(laplacian: csc_array, loop: IntArray, interior: IntArray) -> Condensation:
-    """Eliminate `interior` from `laplacian` (n_v, n_v), symmetric.
+def condense(
+    row: IntArray, column: IntArray, values: FloatArray, loop: IntArray, interior: IntArray
+) -> Condensation:
+    """Eliminate `interior` from a symmetric matrix (n_v, n_v) with entries (m,).
 
-    Raises LinAlgError unless what is eliminated is positive definite.
+    Those with the same place are summed. Raises LinAlgError unless what is eliminated is
+    positive definite.
     """
-    rows = laplacian.tocsr()
-    pieces = dissect(rows, loop, interior)
     # Blocks of a hundred rows: two threads would mostly wait for each other.
     with one_thread():
-        row = np.repeat(np.arange(rows.shape[0]), np.diff(rows.indptr))
-        found = factorise(plan(row, rows.indices, pieces, loop), rows.data)
+        reduce = _at_once if len(interior) <= _DENSE else _in_parts
+        found = reduce(row, column, values, loop, interior)
     # A translation costs nothing. Where slivers make weights of 1e8 that cancel, rounding
     # would have it cost something, and leave a pull on the loop that nothing balances.
     diagonal = np.diag_indices_from(found.stiffness)
     found.stiffness[diagonal] -= found.stiffness.sum(axis=1)
     return found
+
+
+def _at_once(
+    row: IntArray, column: IntArray, values: FloatArray, loop: IntArray, interior: IntArray
+) -> Condensation:
+    order, own = np.concatenate([interior, loop]), len(interior)
+    n = len(order)
+    place = np.empty(n, dtype=np.int64)
+    place[order] = np.arange(n)
+    block = np.bincount(place[row] * n + place[column], values, minlength=n * n)
+    block = block.reshape(n, n)
+    if not own:
+        return Condensation(block, order, ())
+    half, rest, factor = eliminate(block, own)
+    stiffness = np.tril(rest) + np.tril(rest, -1).T
+    return Condensation(stiffness, order, (Part(0, own, np.arange(own, n), half, factor),))
+
+
+def _in_parts(
+    row: IntArray, column: IntArray, values: FloatArray, loop: IntArray, interior: IntArray
+) -> Condensation:
+    from scipy.sparse import csr_array
+
+    from eulerplateau.film.dissection import dissect
+    from eulerplateau.film.elimination import plan
+
+    n = len(loop) + len(interior)
+    rows = csr_array((values, (row, column)), shape=(n, n))
+    pieces = dissect(rows, loop, interior)
+    row = np.repeat(np.arange(n), np.diff(rows.indptr))
+    return factorise(plan(row, rows.indices, pieces, loop), rows.data)

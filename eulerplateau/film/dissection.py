@@ -7,10 +7,10 @@ factorisation of a planar graph's matrix fills in as little as it can, n log n.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from scipy.sparse import csr_array
 
 from eulerplateau.arrays import IntArray
+from eulerplateau.compiled import njit
 
 # Pieces of this many vertices are dense matrices that BLAS multiplies well.
 LARGEST = 128

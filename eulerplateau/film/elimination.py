@@ -12,45 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
-from scipy.linalg import LinAlgError
-from scipy.linalg.blas import dsyrk, dtrsm
-from scipy.linalg.lapack import dpotrf
 
 from eulerplateau.arrays import FloatArray, IntArray
-
-
-@dataclass(frozen=True)
-class Part:
-    """Rows start ... stop - 1 of the order, which hang on those `around` them.
-
-    With the factor C, Cholesky's and lower, of what is eliminated, in equilibrium
-    x[start:stop] = -C^-T half^T x[around].
-
-    Attributes
-    ----------
-    half : (n_around, n) float, F_21 C^-T
-    factor : (n, n) float
-    """
-
-    start: int
-    stop: int
-    around: IntArray
-    half: FloatArray
-    factor: FloatArray
-
-    def unfolded(self, x: FloatArray, inside: FloatArray | None = None) -> FloatArray:
-        """Return x[start:stop] (n, m) of x[around]: in equilibrium, plus C^-T inside."""
-        own = -self.half.T @ x
-        if inside is not None:
-            own += inside
-        found: FloatArray = dtrsm(1.0, self.factor, own, lower=1, trans_a=1)
-        return found
-
-    def pulled(self, own: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return C^-1 f and what that leaves of forces f (n, m) on the rows around."""
-        inside: FloatArray = dtrsm(1.0, self.factor, own, lower=1)
-        return inside, -self.half @ inside
+from eulerplateau.compiled import njit
+from eulerplateau.film.parts import Part, eliminate
 
 
 @dataclass(frozen=True)
@@ -110,7 +75,7 @@ class Elimination:
         for number, front in enumerate(inner):
             own = front.stop - front.start
             block = front.assemble(values, remainders)
-            half, remainder, factor = _condense_dense(block, own)
+            half, remainder, factor = eliminate(block, own)
             parts.append(Part(front.start, front.stop, front.around, half, factor))
             remainders[number] = remainder
         rest = kept.assemble(values, remainders)
@@ -127,7 +92,7 @@ def plan(
     summed; of two that mirror each other across parts the later row's may be missing.
     """
     order = np.concatenate([*pieces, kept])
-    place = np.empty(len(order), dtype=np.int64)
+    place = np.empty(len(order), dtype=np.int32)
     place[order] = np.arange(len(order))
     row, column = place[row], place[column]
     stops = np.cumsum([*(len(piece) for piece in pieces), len(kept)], dtype=np.int64)
@@ -146,13 +111,17 @@ def plan(
         mine = entries[first[number] : first[number + 1]]
         below = [fronts[before].around for before in waiting[number]]
         touched = np.unique(np.concatenate([column[mine], *below]))
-        around = touched[np.searchsorted(touched, stop) :]
+        around = touched[np.searchsorted(touched, stop) :].astype(np.int64)
         size = stop - start + len(around)
         local[start:stop] = np.arange(stop - start)
         local[around] = np.arange(stop - start, size)
         places = local[row[mine]] * size + local[column[mine]]
+        # Numbers of half the size where they have room: there is one for every entry.
+        kind = np.int32 if max(size * size, len(row)) < 1 << 31 else np.int64
         left = [(before, local[fronts[before].around]) for before in waiting[number]]
-        fronts.append(_Front(start, stop, around, mine, places, left))
+        fronts.append(
+            _Front(start, stop, around, mine.astype(kind), places.astype(kind), left)
+        )
         if len(around):
             waiting[int(np.searchsorted(stops, around[0], side="right"))].append(number)
     return Elimination(order, tuple(fronts))
@@ -167,24 +136,6 @@ def summed(place: IntArray, values: FloatArray, n: int) -> FloatArray:
         return np.stack([summed(place, column, n) for column in values.T], axis=1)
     # float64 even where nothing is added.
     return np.bincount(place, values, minlength=n).astype(np.float64, copy=False)
-
-
-def _condense_dense(
-    block: FloatArray, own: int
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Eliminate the first `own` rows of a symmetric matrix, given below its diagonal.
-
-    Returns F_21 C^-T, F_22 - F_21 F_11^-1 F_12 below its diagonal, and C, the factor of
-    F_11.
-    """
-    factor, failed = dpotrf(block[:own, :own], lower=True)
-    if failed:
-        raise LinAlgError("what is eliminated is not positive definite")
-    if own == len(block):
-        return np.zeros((0, own)), np.zeros((0, 0)), factor
-    half = dtrsm(1.0, factor, block[own:, :own], side=1, lower=1, trans_a=1)
-    rest = dsyrk(-1.0, half, beta=1.0, c=block[own:, own:], lower=1)
-    return half, rest, factor
 
 
 @njit(cache=True)

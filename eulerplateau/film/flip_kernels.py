@@ -6,9 +6,9 @@ Arrays in, arrays out; helpers stay in this file (numba #1833).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.compiled import njit
 
 # Two triangles are turned into the other two of their quadrilateral only where it is nearly
 # flat: cosine of the largest angle between their normals, before and after.

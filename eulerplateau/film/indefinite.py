@@ -8,15 +8,14 @@ regular that is stable, and by Sylvester's law the pivots count the negative eig
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from numba import njit
 from scipy.linalg import LinAlgError
 from scipy.linalg.blas import dgemm
 from scipy.linalg.lapack import dsytrf, dsytrs
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.compiled import njit
 from eulerplateau.film.elimination import Elimination
 from eulerplateau.film.solve_kernels import solve_symmetric_fronts
 
@@ -25,27 +24,12 @@ _COLUMNS = 32
 
 
 @dataclass(frozen=True)
-class _Part:
-    """Rows start ... stop - 1: their block's factor, and how they hang on those around.
-
-    response : (n, n_around) float, F_11^-1 F_12
-    """
-
-    start: int
-    stop: int
-    around: IntArray
-    response: FloatArray
-    factor: FloatArray
-    pivots: IntArray
-
-
-@dataclass(frozen=True)
 class IndefiniteFactor:
     """A factorised matrix (n, n); `n_negative` of its eigenvalues are negative."""
 
     n_negative: int
     _order: IntArray
-    _parts: tuple[_Part, ...]
+    _packed: tuple[IntArray, IntArray, IntArray, IntArray, FloatArray]
 
     def solve(self, rhs: FloatArray) -> FloatArray:
         """Return the solution (n, m) for right-hand sides (n, m)."""
@@ -55,34 +39,23 @@ class IndefiniteFactor:
         x[self._order] = columns.T
         return x
 
-    @cached_property
-    def _packed(self) -> tuple[IntArray, IntArray, IntArray, IntArray, FloatArray]:
-        """All parts as arrays, for solve_kernels.py."""
-        parts = self._parts
-        starts = np.array([part.start for part in parts])
-        counts = np.cumsum([0, *(len(part.around) for part in parts)])
-        around = np.concatenate([part.around for part in parts])
-        pieces = [piece for part in parts for piece in (part.factor, part.response)]
-        return (
-            starts,
-            counts,
-            around,
-            np.concatenate([part.pivots for part in parts]),
-            np.concatenate([piece.ravel("F") for piece in pieces]),
-        )
-
 
 def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> IndefiniteFactor:
     """Factorise a symmetric matrix with these entries (m,), kept rows last.
 
     Raises LinAlgError if a pivot vanishes. The caller sees to it that BLAS has one thread.
     """
-    parts: list[_Part] = []
+    # Of a front that keeps nothing there is nothing.
+    fronts = [front for front in elimination.fronts if front.stop > front.start]
+    sizes = [(front.stop - front.start) * front.size for front in fronts]
+    # Factors and responses F_11^-1 F_12 at once where they are read: copies are as large.
+    data, filled = np.empty(sum(sizes)), 0
+    all_pivots: list[IntArray] = []
     remainders: dict[int, FloatArray] = {}
     negative = 0
     for number, front in enumerate(elimination.fronts):
         own = front.stop - front.start
-        if not own:  # of nothing that is kept
+        if not own:
             continue
         block = front.assemble(entries, remainders)
         factor, pivots, failed = dsytrf(block[:own, :own], lower=1, lwork=_COLUMNS * own)
@@ -90,12 +63,21 @@ def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> Indef
             raise LinAlgError("a pivot vanishes")
         negative += negative_pivots(factor, pivots)
         below = block[own:, :own]
-        response = np.zeros((own, 0))
+        here = data[filled : (filled := filled + own * front.size)]
+        here[: own * own] = factor.ravel("F")
         if len(below):
             response = dsytrs(factor, pivots, below.T, lower=1)[0]
             remainders[number] = dgemm(-1.0, below, response, 1.0, block[own:, own:])
-        parts.append(_Part(front.start, front.stop, front.around, response, factor, pivots))
-    return IndefiniteFactor(negative, elimination.order, tuple(parts))
+            here[own * own :] = response.ravel("F")
+        all_pivots.append(pivots)
+    packed = (
+        np.array([front.start for front in fronts]),
+        np.cumsum([0, *(len(front.around) for front in fronts)]),
+        np.concatenate([front.around for front in fronts]),
+        np.concatenate(all_pivots),
+        data,
+    )
+    return IndefiniteFactor(negative, elimination.order, packed)
 
 
 @njit(cache=True)

@@ -164,7 +164,6 @@ class NormalHeights:
             np.flatnonzero(follows[i] & follows[k]),
         )
 
-    @cached_property
     def _places(self) -> tuple[tuple[IntArray, IntArray], ...]:
         """Rows and columns of `_entries`: heights, then three for a loop vertex."""
         number, (heights, coupling, loop) = self.tiling.numbers, self._chosen
@@ -181,14 +180,14 @@ class NormalHeights:
 
     @cached_property
     def _elimination(self) -> Elimination:
-        row, column = (np.concatenate(parts) for parts in zip(*self._places, strict=True))
+        row, column = (np.concatenate(parts) for parts in zip(*self._places(), strict=True))
         n_i = len(self.tiling.interior)
         kept = np.arange(n_i, n_i + 3 * len(self.tiling.loop))
         return plan(row, column, self.tiling.pieces, kept)
 
     @cached_property
     def _whole(self) -> FilmWithLoop:
-        up, (inside, on_loop), kept = self._places
+        up, (inside, on_loop), kept = self._places()
         row = np.concatenate([up[0], inside, on_loop, kept[0]])
         column = np.concatenate([up[1], on_loop, inside, kept[1]])
         n_i, n_b = len(self.tiling.interior), len(self.tiling.loop)

@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
 from eulerplateau.film.condensation import Condensation, condense
 from eulerplateau.film.load import SPRING_LOAD, TENSION, Load
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible
-from eulerplateau.loop.kernels import film_energy_gradient
 from eulerplateau.mesh import Disk, Shape, cotangents
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 # Cotangents are as large as a triangle is thin; of this size they leave the weights of the
 # triangles around it four digits.
@@ -49,13 +50,18 @@ class QuadraticFilm:
 
     def laplacian(self) -> csc_array:
         """Return the weighted graph Laplacian (n_v, n_v): energy = load * tr(x^T L x)."""
-        i, j = self.edges.T
-        w = self.weights
-        rows = np.concatenate([i, j, i, j])
-        columns = np.concatenate([j, i, i, j])
-        values = np.concatenate([-w, -w, w, w])
+        from scipy.sparse import csc_array  # slow to load, and a sweep can do without
+
+        row, column, values = self._entries
         n_v = len(self.rest.x)
-        return csc_array((values, (rows, columns)), shape=(n_v, n_v))
+        return csc_array((values, (row, column)), shape=(n_v, n_v))
+
+    @property
+    def _entries(self) -> tuple[IntArray, IntArray, FloatArray]:
+        """Rows, columns and values (4 m,) that sum up to the Laplacian."""
+        (i, j), w = self.edges.T, self.weights
+        rows, columns = np.concatenate([i, j, i, j]), np.concatenate([j, i, i, j])
+        return rows, columns, np.concatenate([-w, -w, w, w])
 
     @property
     def dimension(self) -> int:
@@ -64,10 +70,13 @@ class QuadraticFilm:
 
     def energy_gradient(self, shape: Shape, load: float) -> tuple[float, FloatArray]:
         """Return the film's energy and its gradient (n_v, 3) on a shape."""
-        gradient = np.zeros_like(shape.x)
-        weights = load * self.weights
-        energy = film_energy_gradient(shape.x, self.edges, weights, gradient)
-        return energy, gradient
+        (i, j), n_v = self.edges.T, len(shape.x)
+        span = shape.x[j] - shape.x[i]
+        pull = (2 * load * self.weights)[:, None] * span
+        gradient = np.empty_like(shape.x)
+        for axis, along in enumerate(pull.T):
+            gradient[:, axis] = np.bincount(j, along, n_v) - np.bincount(i, along, n_v)
+        return 0.5 * float(np.vdot(pull, span)), gradient
 
     def forces(self, shape: Shape) -> FloatArray:
         """Return the forces (n_v, 3) of unit load: the whole gradient."""
@@ -91,7 +100,7 @@ class QuadraticFilm:
 
     @cached_property
     def _eliminated(self) -> QuadraticOfLoop:
-        condensed = condense(self.laplacian(), self.rest.loop, self.interior)
+        condensed = condense(*self._entries, self.rest.loop, self.interior)
         return QuadraticOfLoop(self.rest, condensed)
 
     def slide(self, loop: Loop, x_loop: FloatArray) -> FloatArray | None:

@@ -7,9 +7,9 @@ its work.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.compiled import njit
 
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})

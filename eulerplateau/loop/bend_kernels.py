@@ -21,9 +21,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.compiled import njit
 
 # theta / sin(theta) is a power series in (1 - cos theta) / 2, with the ratios k / (k + 1/2)
 # of its coefficients: up to 60 degrees so many are right to rounding.

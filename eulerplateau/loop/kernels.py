@@ -10,9 +10,9 @@ call each other stay in this file.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.compiled import njit
 
 Vector = tuple[float, float, float]
 

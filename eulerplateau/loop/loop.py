@@ -10,7 +10,6 @@ from functools import cached_property
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import kernels
 from eulerplateau.loop.term import OwnTerm
 
 # Edges in which a resolved loop can turn back on itself.
@@ -132,6 +131,11 @@ class Loop:
         turns = np.linalg.norm(backward_differences(tangent), axis=1)
         return bool((turns / self.mean_lengths).max() > 2 / self.diameter)
 
+    def bending_energy(self, x_loop: FloatArray) -> float:
+        """Return sum_v <s_v> kappa_v^2 of loop positions (n_b, 3)."""
+        turn = backward_differences(self.chords(x_loop) / self.rest_lengths[:, None])
+        return float(np.vdot(turn, turn / self.mean_lengths[:, None]))
+
     def bending_force(self, x_loop: FloatArray) -> FloatArray:
         """Return the gradient (n_b, 3) of sum_v <s_v> kappa_v^2, i.e. 2 B x.
 
@@ -170,9 +174,11 @@ def strands_meet(x_loop: FloatArray, reach: float | None = None) -> bool:
     n = len(x_loop)
     if n < 4 * _TURNING_BACK:
         return False
+    from eulerplateau.loop.kernels import strands_within  # springs do not ask
+
     if reach is None:
         reach = float(np.linalg.norm(differences(x_loop), axis=1).max())
-    return kernels.strands_within(np.ascontiguousarray(x_loop), reach, _TURNING_BACK)
+    return strands_within(np.ascontiguousarray(x_loop), reach, _TURNING_BACK)
 
 
 def largest_turning(x_loop: FloatArray) -> float:

@@ -7,7 +7,6 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.loop import Loop
-from eulerplateau.loop.slide_kernels import SLIDES, keep_lengths
 
 RIGID_MOTIONS = 6
 
@@ -59,6 +58,8 @@ def sliding(loop: Loop, x: FloatArray) -> FloatArray | None:
     """
     if not all(term.slides for term in loop.terms.values()):
         return None
+    from eulerplateau.loop.slide_kernels import SLIDES, keep_lengths  # not for springs
+
     chords = loop.chords(x)
     along = chords / np.linalg.norm(chords, axis=1)[:, None]
     slide = along + np.roll(along, 1, axis=0)

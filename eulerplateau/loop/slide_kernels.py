@@ -8,9 +8,9 @@ edges (solvers/in_plane/kernels.py). Helpers stay in this file (numba #1833).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.compiled import njit
 
 # Threshold on the part of the sliding motion that is not a rotation, of 1. A circle's
 # sliding is a rotation. Of loops nearer to a circle, what is left of it cannot be told from

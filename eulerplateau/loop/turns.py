@@ -16,18 +16,20 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dpttrf, dpttrs
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.loop import Loop, backward_differences, differences
-from eulerplateau.loop.slide_kernels import solve_lengths
 
 
 @dataclass(frozen=True)
 class LengthMetric:
     """J M^-1 J^T (n_b, n_b), M = diag(<s>): how forces along the edges change lengths.
 
-    Each edge meets only its two neighbours, so that to solve with the matrix costs O(n_b)
-    (slide_kernels.py).
+    Each edge meets only its two neighbours, so that to solve with the matrix costs O(n_b):
+    it is tridiagonal but for the entry in the corner, which a rank-one term w w^T takes
+    out, w having two entries; what remains is positive semidefinite, and Sherman and
+    Morrison put w back. slide_kernels.py does the same inside of compiled loops.
 
     Attributes
     ----------
@@ -44,12 +46,27 @@ class LengthMetric:
         Raises LinAlgError if the matrix is singular: an edge has no length, or all edges
         lie along one line.
         """
-        columns = np.array(rhs.T, dtype=np.float64, order="C", ndmin=2)
-        for column in columns:
-            if not solve_lengths(self.directions, self.means, column):
-                raise LinAlgError("an edge of the loop has no length, or the loop no width")
-        solution: FloatArray = columns.T.reshape(rhs.shape)
+        pivots, ratios, border, solved = self._factor
+        solution: FloatArray = dpttrs(pivots, ratios, rhs)[0]
+        share = (border @ solution) / (1 + border @ solved)
+        solution -= solved * share if rhs.ndim == 1 else np.outer(solved, share)
         return solution
+
+    @cached_property
+    def _factor(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """LAPACK's factor of the matrix without w w^T, then w, and w solved for."""
+        u, ease = self.directions, 1 / self.means
+        squares = (u * u).sum(axis=1)
+        diagonal = squares * (ease + np.roll(ease, -1))
+        beside = -(u[1:] * u[:-1]).sum(axis=1) * ease[1:]
+        corner = -float(u[-1] @ u[0]) * ease[0]
+        border, root = np.zeros(len(u)), np.sqrt(abs(corner))
+        even = (squares[0] / squares[-1]) ** 0.25 if squares[[0, -1]].all() else 1.0
+        border[0], border[-1] = root * even, np.copysign(root / even, corner)
+        pivots, ratios, _ = dpttrf(diagonal - border * border, beside)
+        if not (pivots > 0).all():
+            raise LinAlgError("an edge of the loop has no length, or the loop no width")
+        return pivots, ratios, border, dpttrs(pivots, ratios, border)[0]
 
     def force(self, tensions: FloatArray) -> FloatArray:
         """Return J^T tensions (n_b, d), for tensions (n_b,)."""

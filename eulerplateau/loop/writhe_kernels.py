@@ -16,9 +16,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.compiled import njit
 
 # Tangent of an angle that is small, and how many of them are less than pi.
 _SMALL, _FEW = 0.1, 24

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.errors import MeshError
+from eulerplateau.mesh.graphs import components
 from eulerplateau.mesh.triangles import directed_edges, joints
 
 
@@ -32,8 +31,7 @@ def oriented(triangles: IntArray) -> tuple[IntArray, BoolArray]:
     # Two sheets, each triangle as it is on one and turned over on the other.
     start = np.concatenate([first, first + n])
     end = np.concatenate([second + same * n, second + ~same * n])
-    joined = coo_array((np.ones(len(start)), (start, end)), shape=(2 * n, 2 * n))
-    sheet = connected_components(joined, directed=False)[1].reshape(2, n)
+    sheet = components(start, end, 2 * n).reshape(2, n)
     if (sheet[0] == sheet[1]).any():
         raise MeshError(
             "mesh", None, "has only one side, as a Moebius strip: it cannot be oriented"
@@ -108,9 +106,7 @@ def _places(points: FloatArray, tolerance: float) -> IntArray:
     exponent = -int(np.frexp(np.abs(points).max())[1])
     tree = cKDTree(np.ldexp(points, exponent))
     near = tree.query_pairs(float(np.ldexp(tolerance, exponent)), output_type="ndarray")
-    joined = coo_array((np.ones(len(near)), near.T), shape=(len(points),) * 2)
-    place = connected_components(joined, directed=False)[1]
-    return np.asarray(place, dtype=np.int64)
+    return components(*near.T, len(points))
 
 
 def _fans(corners: IntArray) -> IntArray:
@@ -126,9 +122,7 @@ def _fans(corners: IntArray) -> IntArray:
         match = np.where(flat[other] == flat[end], other, _next_corner(other))
         pairs.append(np.stack([end, match]))
     start, end = np.concatenate(pairs, axis=1)
-    joined = coo_array((np.ones(len(start)), (start, end)), shape=(len(flat),) * 2)
-    fan = connected_components(joined, directed=False)[1]
-    return np.asarray(fan, dtype=np.int64).reshape(-1, 3)
+    return components(start, end, len(flat)).reshape(-1, 3)
 
 
 def _next_corner(corner: IntArray) -> IntArray:

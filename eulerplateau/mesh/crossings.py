@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numba import njit
+from collections.abc import Iterator
 
-from eulerplateau.arrays import FloatArray, IntArray
+import numpy as np
+
+from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.errors import MeshError
 
 # Distances below this, relative to the extent of the shape, count as contact: a thousand
 # times the rounding of a coordinate.
 _CONTACT = 1e-13
+# Of a strip's width: far above rounding, and far below any triangle.
+_SLACK = 1e-9
+# Pairs that are compared at a time.
+_AT_ONCE = 1 << 18
 
 
 def self_intersections(x: FloatArray, triangles: IntArray) -> int:
@@ -41,149 +46,111 @@ def crossing_pairs(x: FloatArray, triangles: IntArray) -> IntArray:
     if not finite.all():
         culprit = int(np.flatnonzero(~finite)[0])
         raise MeshError("vertex", culprit, "a coordinate is not finite")
-    low = x[triangles].min(axis=1)
-    high = x[triangles].max(axis=1)
-    extent = np.ptp(x, axis=0)
-    axes = np.argsort(-extent)
-    order = np.argsort(low[:, axes[0]], kind="stable")
-    boxes = np.stack([low[order][:, axes], high[order][:, axes]], axis=1)
+    extent, corners = np.ptp(x, axis=0), triangles.T
     contact = _CONTACT * float(extent.max())
-    pairs = np.empty((0, 2), dtype=np.int64)
-    count = _sweep(x, triangles[order], boxes, contact, pairs)
-    if count:
-        pairs = np.empty((count, 2), dtype=np.int64)
-        _sweep(x, triangles[order], boxes, contact, pairs)
-    found: IntArray = order[pairs]
+    found = [np.empty((2, 0), dtype=np.int64)]
+    for near in _near(corners, (x - x.min(axis=0)).T[np.argsort(-extent)]):
+        one, other = (np.take(x.T, corners[:, place], axis=1) for place in near)
+        found.append(near[:, _cross(one, other, contact)])
+    pairs: IntArray = np.concatenate(found, axis=1).T
+    return pairs
+
+
+def _near(corners: IntArray, x: FloatArray) -> Iterator[IntArray]:
+    """Yield pairs (2, m) of triangles that share no vertex and whose boxes meet.
+
+    The film is cut into strips across axis 0, about as wide as two triangles. In each,
+    triangles are sorted by where they begin along axis 1, and each is compared with those
+    that begin before it ends: few, if axis 2 is the shortest. corners : (3, n_t); x :
+    (3, n_v), from 0 on.
+    """
+    places = np.take(x, corners, axis=1)
+    low, high = places.min(axis=1), places.max(axis=1)
+    width = 2 * float((high[0] - low[0]).mean()) or 1.0
+    first = np.floor(low[0] / width)
+    many = (np.floor(high[0] / width) - first).astype(np.int64) + 1
+    triangle = np.repeat(np.arange(len(many)), many)
+    strip = np.arange(len(triangle)) - np.repeat(np.cumsum(many) - many, many)
+    strip = strip + first[triangle]
+    # One number says both the strip and the place in it, but for rounding.
+    span = 2 * float(x[1].max()) or 1.0
+    begin, end = strip + (low[1] / span)[triangle], strip + (high[1] / span)[triangle]
+    order = np.argsort(begin)
+    triangle, strip = triangle[order], strip[order]
+    behind = np.searchsorted(begin[order], end[order] + _SLACK, side="right")
+    stops = np.cumsum(behind - np.arange(1, len(order) + 1))
+    start = 0
+    while start < len(order):
+        before = stops[start - 1] if start else 0
+        stop = max(start + 1, int(np.searchsorted(stops, before + _AT_ONCE)))
+        counts = np.diff(stops[start:stop], prepend=before)
+        at = np.repeat(np.arange(start, stop), counts)
+        ahead = behind[start:stop] - stops[start:stop] + before
+        one, other = triangle[at], triangle[np.arange(len(at)) + np.repeat(ahead, counts)]
+        # Two that meet in several strips count in the first of them.
+        kept = np.flatnonzero(strip[at] == np.maximum(first[one], first[other]))
+        for lower, upper in zip(low, high, strict=True):
+            one, other = one[kept], other[kept]
+            meets = (lower[other] <= upper[one]) & (lower[one] <= upper[other])
+            kept = np.flatnonzero(meets)
+        one, other = one[kept], other[kept]
+        apart, others = np.ones(len(one), dtype=bool), np.take(corners, other, axis=1)
+        for column in np.take(corners, one, axis=1):
+            apart &= (column != others).all(axis=0)
+        yield np.stack([one[apart], other[apart]])
+        start = stop
+
+
+def _cross(one: FloatArray, other: FloatArray, contact: float) -> BoolArray:
+    """Return which (m,) triangles cross (Moeller's interval test, 1997).
+
+    one, other : (3, 3, m), by axis, by corner, by pair.
+    """
+    found = np.zeros(one.shape[2], dtype=bool)
+    normal, over, there = _heights(one, other, contact)
+    place = np.flatnonzero(there)
+    if not len(place):
+        return found
+    one, other, normal, over = (a[..., place] for a in (one, other, normal, over))
+    another, under, there = _heights(other, one, contact)
+    # Both triangles meet the common line of their planes in an interval; compare the two
+    # along the coordinate axis closest to that line.
+    axis = np.abs(np.cross(normal, another, axis=0)).argmax(axis=0)
+    pair = np.arange(len(place))
+    low, high = _interval(one[axis, :, pair].T, under)
+    least, most = _interval(other[axis, :, pair].T, over)
+    common = np.minimum(high, most) - np.maximum(low, least)
+    found[place] = there & (common > 10.0 * contact)
     return found
 
 
-@njit(cache=True)
-def _sweep(
-    x: FloatArray, triangles: IntArray, boxes: FloatArray, contact: float, pairs: IntArray
-) -> int:
-    """Count crossing pairs, and put the first of them into `pairs` (n, 2).
+def _heights(
+    face: FloatArray, other: FloatArray, contact: float
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Return twice the area vector (3, m) of each face, heights, and what straddles it.
 
-    `boxes` (n_t, 2, 3) ascend in their lower end along axis 0.
+    Heights (3, m) are those of the corners of `other` over the face times twice its area,
+    zero where that is contact; a triangle straddles that has corners on both sides.
     """
-    count = 0
-    points = np.empty((2, 3, 3))
-    distance = np.empty((2, 3))
-    normal = np.empty((2, 3))
-    for i in range(len(boxes)):
-        for j in range(i + 1, len(boxes)):
-            if boxes[j, 0, 0] > boxes[i, 1, 0]:
-                break
-            if boxes[j, 0, 1] > boxes[i, 1, 1] or boxes[i, 0, 1] > boxes[j, 1, 1]:
-                continue
-            if boxes[j, 0, 2] > boxes[i, 1, 2] or boxes[i, 0, 2] > boxes[j, 1, 2]:
-                continue
-            if _share_vertex(triangles[i], triangles[j]):
-                continue
-            for k in range(3):
-                for axis in range(3):
-                    points[0, k, axis] = x[triangles[i, k], axis]
-                    points[1, k, axis] = x[triangles[j, k], axis]
-            if _cross(points, distance, normal, contact):
-                if count < len(pairs):
-                    pairs[count, 0], pairs[count, 1] = i, j
-                count += 1
-    return count
-
-
-@njit(cache=True)
-def _share_vertex(a: IntArray, b: IntArray) -> bool:
-    for i in range(3):
-        for j in range(3):
-            if a[i] == b[j]:
-                return True
-    return False
-
-
-@njit(cache=True)
-def _cross(
-    points: FloatArray, distance: FloatArray, normal: FloatArray, contact: float
-) -> bool:
-    """Whether the two triangles `points` (2, 3, 3) cross (Moeller's interval test, 1997).
-
-    `distance` (2, 3) and `normal` (2, 3) are work space.
-    """
-    for face in range(2):
-        if not _straddles(
-            points[face], points[1 - face], distance[face], normal[face], contact
-        ):
-            return False
-    # Both triangles meet the common line of their planes in an interval; compare the two
-    # along the coordinate axis closest to that line.
-    axis = 0
-    steepest = -1.0
-    for k in range(3):
-        along = abs(
-            normal[0, (k + 1) % 3] * normal[1, (k + 2) % 3]
-            - normal[0, (k + 2) % 3] * normal[1, (k + 1) % 3]
-        )
-        if along > steepest:
-            steepest = along
-            axis = k
-    low_a, high_a = _interval(points[0], distance[1], axis)
-    low_b, high_b = _interval(points[1], distance[0], axis)
-    return min(high_a, high_b) - max(low_a, low_b) > 10.0 * contact
-
-
-@njit(cache=True)
-def _straddles(
-    face: FloatArray,
-    other: FloatArray,
-    distance: FloatArray,
-    normal: FloatArray,
-    contact: float,
-) -> bool:
-    """Whether `other` has corners on both sides of the plane of `face`.
-
-    Fills `normal` with twice the area vector of `face`, and `distance` with the height of
-    the corners of `other` over it times twice the area, zero where that is contact.
-    """
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        normal[k] = (face[1, i] - face[0, i]) * (face[2, j] - face[0, j]) - (
-            face[1, j] - face[0, j]
-        ) * (face[2, i] - face[0, i])
+    own, away = face - face[:, :1], other - face[:, :1]
+    normal = np.cross(own[:, 1], own[:, 2], axis=0)
+    height = (normal[:, None] * away).sum(axis=0)
     # A coordinate's rounding error moves the product by at most about that times this
     # square, also where the triangle is a sliver and its normal is lost in rounding.
-    square = 0.0
-    for k in range(3):
-        to_face = 0.0
-        to_other = 0.0
-        for axis in range(3):
-            to_face += (face[k, axis] - face[0, axis]) ** 2
-            to_other += (other[k, axis] - face[0, axis]) ** 2
-        square = max(square, to_face, to_other)
-    below = False
-    above = False
-    for k in range(3):
-        distance[k] = 0.0
-        for axis in range(3):
-            distance[k] += normal[axis] * (other[k, axis] - face[0, axis])
-        if abs(distance[k]) <= contact * square:
-            distance[k] = 0.0
-        below = below or distance[k] < 0.0
-        above = above or distance[k] > 0.0
-    return below and above
+    square = np.maximum((own * own).sum(axis=0), (away * away).sum(axis=0)).max(axis=0)
+    height[np.abs(height) <= contact * square] = 0.0
+    return normal, height, (height.min(axis=0) < 0.0) & (height.max(axis=0) > 0.0)
 
 
-@njit(cache=True)
-def _interval(corners: FloatArray, distance: FloatArray, axis: int) -> tuple[float, float]:
-    """Extent along `axis` of the segment where a straddling triangle meets a plane."""
-    low = np.inf
-    high = -np.inf
-    for i in range(3):
-        j = (i + 1) % 3
-        if distance[i] == 0.0:
-            place = corners[i, axis]
-        elif distance[i] * distance[j] < 0.0:
-            step = distance[i] / (distance[i] - distance[j])
-            place = corners[i, axis] + step * (corners[j, axis] - corners[i, axis])
-        else:
-            continue
-        low = min(low, place)
-        high = max(high, place)
-    return low, high
+def _interval(corner: FloatArray, height: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the ends (m,) of the segments in which triangles that straddle meet a plane.
+
+    Along an axis, of corners (3, m) with these heights (3, m) over the plane.
+    """
+    after = np.roll(height, -1, axis=0)
+    at, between = height == 0.0, height * after < 0.0
+    share = np.divide(height, height - after, out=np.zeros_like(height), where=between)
+    place = corner + share * (np.roll(corner, -1, axis=0) - corner)
+    meets = at | between
+    low = np.where(meets, place, np.inf).min(axis=0)
+    return low, np.where(meets, place, -np.inf).max(axis=0)

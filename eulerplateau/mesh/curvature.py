@@ -16,7 +16,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.mesh.triangles import area_vectors, unit
+from eulerplateau.mesh.triangles import area_vectors, cross, unit
 
 # Added to the normal equations of the quadric fit, whose entries are of order 1: keeps
 # them solvable where too few or too special neighbours leave a coefficient open.
@@ -72,7 +72,12 @@ class Curvatures:
     @classmethod
     def of(cls, mesh: Disk, x: FloatArray) -> Curvatures:
         """Return those of the shape `x` (n_v, 3) of a mesh, in units of L."""
-        return cls(loop_frame(mesh, x), angle_defects(mesh, x))
+        return cls.known(mesh, x, area_vectors(mesh.triangles, x))
+
+    @classmethod
+    def known(cls, mesh: Disk, x: FloatArray, vectors: FloatArray) -> Curvatures:
+        """Return the same where the triangles' area vectors (n_t, 3) are known."""
+        return cls(_loop_frame(mesh, x, vectors), _angle_defects(mesh, x, vectors))
 
 
 def loop_frame(mesh: Disk, x: FloatArray) -> LoopFrame:
@@ -84,13 +89,17 @@ def loop_frame(mesh: Disk, x: FloatArray) -> LoopFrame:
     weighting of those around a loop vertex makes the contour integrals of kappa_n and
     kappa_g better than first order in the edge length; with the quadric they are second.
     """
+    return _loop_frame(mesh, x, area_vectors(mesh.triangles, x))
+
+
+def _loop_frame(mesh: Disk, x: FloatArray, vectors: FloatArray) -> LoopFrame:
     edges = unit(x[np.roll(mesh.loop, -1)] - x[mesh.loop])
     before = np.roll(edges, 1, axis=0)
     tangent = unit(edges + before)
     mean_lengths = 0.5 * (mesh.rest_lengths + np.roll(mesh.rest_lengths, 1))
     kappa_vec = (edges - before) / mean_lengths[:, None]
-    normal = _loop_normals(mesh, x, tangent)
-    conormal = np.cross(normal, tangent)
+    normal = _loop_normals(mesh, x, tangent, vectors)
+    conormal = cross(normal, tangent)
     kappa_n = (kappa_vec * normal).sum(axis=1)
     kappa_g = (kappa_vec * conormal).sum(axis=1)
     return LoopFrame(
@@ -111,11 +120,16 @@ def angle_defects(mesh: Disk, x: FloatArray) -> FloatArray:
 
     They sum to 2 pi on every shape, however crumpled: discrete Gauss-Bonnet.
     """
+    return _angle_defects(mesh, x, area_vectors(mesh.triangles, x))
+
+
+def _angle_defects(mesh: Disk, x: FloatArray, vectors: FloatArray) -> FloatArray:
     corner = x[mesh.triangles]
     ahead = np.roll(corner, -1, axis=1) - corner
-    back = np.roll(corner, 1, axis=1) - corner
-    doubled = 2.0 * np.linalg.norm(area_vectors(mesh.triangles, x), axis=1)
-    angles = np.arctan2(doubled[:, None], (ahead * back).sum(axis=2))
+    doubled = 2.0 * np.linalg.norm(vectors, axis=1)
+    # The way back from a corner is the way ahead from the one before it.
+    turns = -np.einsum("tki,tki->tk", ahead, np.roll(ahead, 1, axis=1))
+    angles = np.arctan2(doubled[:, None], turns)
     full = np.full(mesh.n_v, 2.0 * np.pi)
     full[mesh.loop] = np.pi
     return full - np.bincount(mesh.triangles.ravel(), angles.ravel(), minlength=mesh.n_v)
@@ -136,7 +150,9 @@ def gauss_curvature_from_loop(mesh: Disk, x: FloatArray) -> float:
     return float(2.0 * np.pi - frame.kappa_g @ frame.mean_lengths)
 
 
-def _loop_normals(mesh: Disk, x: FloatArray, tangent: FloatArray) -> FloatArray:
+def _loop_normals(
+    mesh: Disk, x: FloatArray, tangent: FloatArray, vectors: FloatArray
+) -> FloatArray:
     """Return the film's unit normals (n_b, 3) on the loop, perpendicular to `tangent`.
 
     Over the plane of the area-weighted mean normal of the incident triangles, heights of
@@ -144,14 +160,14 @@ def _loop_normals(mesh: Disk, x: FloatArray, tangent: FloatArray) -> FloatArray:
     Where the neighbourhood is no graph over the plane the result is rough, but stays
     within a right angle of the mean normal.
     """
-    areas = area_vectors(mesh.triangles, x).repeat(3, axis=0)
+    areas = vectors.repeat(3, axis=0)
     corners = mesh.triangles.ravel()
     summed = np.empty((mesh.n_v, 3))
     for axis in range(3):
         summed[:, axis] = np.bincount(corners, areas[:, axis], minlength=mesh.n_v)
     mean = summed[mesh.loop]
     mean = unit(mean - (mean * tangent).sum(axis=1, keepdims=True) * tangent)
-    across = np.cross(mean, tangent)
+    across = cross(mean, tangent)
 
     first, neighbours = mesh.second_ring
     count = np.diff(first, append=len(neighbours))

@@ -1,7 +1,7 @@
 """A triangulated disk: positions, triangles, the loop that bounds it, and its checks.
 
-SciPy is imported where it is needed, in `triangles` too: it is slow to load, and who only
-reads and draws stored shapes can do without.
+SciPy is imported where it is needed: it is slow to load, and who only reads and draws
+stored shapes can do without.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
+from eulerplateau.mesh.graphs import around, components, neighbours_by_vertex
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.mesh.triangles import directed_edges
 
@@ -154,17 +155,13 @@ class Disk:
 
         Where in the second array (n,) those of loop vertex v begin (n_b,), and vertices.
         """
-        from scipy.sparse import coo_array
-
-        start, end = self.edges.T
-        ends = (np.concatenate([start, end]), np.concatenate([end, start]))
-        shape = (self.n_v, self.n_v)
-        ring = coo_array((np.ones(len(ends[0])), ends), shape=shape).tocsr()
-        near_loop = ring[self.loop]
-        row, column = (near_loop @ ring + near_loop).nonzero()
+        graph = neighbours_by_vertex(self.edges, self.n_v)
+        row, column = around(*graph, self.loop)
+        whose, beyond = around(*graph, column)
+        ends = np.concatenate([row, row[whose]]), np.concatenate([column, beyond])
+        row, column = np.divmod(np.unique(ends[0] * self.n_v + ends[1]), self.n_v)
         other = column != self.loop[row]
-        row, column = row[other], column[other]
-        return np.searchsorted(row, np.arange(self.n_b)), column.astype(np.int64)
+        return np.searchsorted(row[other], np.arange(self.n_b)), column[other]
 
     @cached_property
     def digest(self) -> str:
@@ -191,9 +188,6 @@ def _check_arrays(points: FloatArray, triangles: IntArray) -> None:
 
 def trace_disk(n_v: int, triangles: IntArray) -> IntArray:
     """Return the loop; raise MeshError unless the triangles form an oriented disk."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     half = directed_edges(triangles)
     key = np.sort(half, axis=1) @ np.array([n_v, 1])
     _, first, side, count = np.unique(
@@ -208,13 +202,11 @@ def trace_disk(n_v: int, triangles: IntArray) -> IntArray:
         twice > 1,
         "is passed in the same direction by both its triangles: orient them alike",
     )
-    owner = np.repeat(np.arange(len(triangles)), 3)
-    adjacency = coo_array(
-        (np.ones(len(owner)), (owner, side)), shape=(len(triangles), len(first))
-    ).tocsr()
-    pieces, piece = connected_components(adjacency @ adjacency.T, directed=False)
-    if pieces > 1:
-        stray = int(np.flatnonzero(piece != piece[0])[0])
+    by_edge, last = np.argsort(side, kind="stable") // 3, np.cumsum(count) - 1
+    inner = last[count == 2]
+    piece = components(by_edge[inner - 1], by_edge[inner], len(triangles))
+    if piece.any():
+        stray, pieces = int(np.flatnonzero(piece)[0]), int(piece.max()) + 1
         raise MeshError(
             "triangle", stray, f"is not joined by an edge to triangle 0: {pieces} pieces"
         )

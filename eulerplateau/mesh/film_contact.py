@@ -8,12 +8,11 @@ that are nearer to each other than the tube is thick, those that hang together w
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.compiled import njit
 from eulerplateau.mesh.crossings import self_intersections
+from eulerplateau.mesh.graphs import components
 from eulerplateau.mesh.shape import Shape
 from eulerplateau.mesh.triangles import neighbours
 
@@ -58,8 +57,7 @@ def _pieces(near: BoolArray, beyond: IntArray) -> int:
     sides = np.where(beyond[triangles] >= 0, number[edges[:, None], beyond[triangles]], -1)
     others = np.column_stack([following, sides])
     one = np.broadcast_to(np.arange(count)[:, None], others.shape)[others >= 0]
-    links = coo_array((np.ones(len(one)), (one, others[others >= 0])), shape=(count, count))
-    return int(connected_components(links, directed=False)[0])
+    return int(components(one, others[others >= 0], count).max(initial=-1)) + 1
 
 
 @njit(cache=True)

@@ -85,10 +85,11 @@ class Measurer:
         """Return also the curvatures it has; raises what `measure` raises."""
         disk, x = self.disk_of(shape), shape.x
         crossings = self_intersections(x, disk.triangles)
-        curvatures = Curvatures.of(disk, x)
+        vectors = area_vectors(disk.triangles, x)
+        curvatures = Curvatures.known(disk, x, vectors)
         frame = curvatures.frame
         corner = x[disk.triangles]
-        areas = np.linalg.norm(area_vectors(disk.triangles, x), axis=1)
+        areas = np.linalg.norm(vectors, axis=1)
         found = Measures(
             abs_kappa_n=float(np.abs(frame.kappa_n) @ frame.mean_lengths),
             total_gauss_curvature=float(curvatures.defects[disk.interior].sum()),

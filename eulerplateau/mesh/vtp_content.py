@@ -6,8 +6,10 @@ Written here and not by VTK, which takes longer to load than a short sweep to ca
 from __future__ import annotations
 
 import base64
+import struct
 import zlib
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,6 +22,8 @@ Fields = Mapping[str, NDArray[Any]]
 _KINDS = {"f": "Float", "i": "Int", "u": "UInt"}
 # The fastest of zlib's levels: coordinates hold little that can be compressed.
 _LEVEL = 1
+# So many bytes are stored as they are: to set up zlib takes longer than to write them.
+_FEW = 2048
 _NO_CELLS = np.empty((0, 1), dtype=np.int64)
 
 
@@ -46,7 +50,7 @@ def vtp_content(
         *_section("Points", {"Points": x}),
     ]
     for name, rows in cells.items():
-        text += _section(name, _cells(rows))
+        text += _cells(name, rows)
     text += ["</Piece>", "</PolyData>", "</VTKFile>", ""]
     return "\n".join(text).encode("ascii", "xmlcharrefreplace")
 
@@ -55,12 +59,17 @@ def _section(name: str, arrays: Fields) -> list[str]:
     return [f"<{name}>", *(_array(*each) for each in arrays.items()), f"</{name}>"]
 
 
-def _cells(vertices: IntArray) -> Fields:
-    """Return cells of equal size, one row of vertex numbers each."""
-    count, size = vertices.shape
+def _cells(name: str, vertices: IntArray) -> list[str]:
+    """Return a section of cells of equal size, one row of vertex numbers each."""
+    return _same_cells(name, vertices.astype("<i8").tobytes(), vertices.shape)
+
+
+@lru_cache(maxsize=8)
+def _same_cells(name: str, content: bytes, shape: tuple[int, int]) -> list[str]:
+    """Return the same; one shape after another has the same cells."""
+    flat, (count, size) = np.frombuffer(content, "<i8"), shape
     ends = size * np.arange(1, count + 1)
-    flat = vertices.ravel()
-    return {"connectivity": flat.astype(np.int64), "offsets": ends.astype(np.int64)}
+    return _section(name, {"connectivity": flat, "offsets": ends})
 
 
 def _array(name: str, values: NDArray[Any]) -> str:
@@ -90,10 +99,17 @@ def _packed(content: bytes) -> str:
     """Return bytes as VTK has them: lengths, and then all in one block, in base64."""
     if not content:
         return _base64(np.zeros(3, "<u8").tobytes())
-    packed = zlib.compress(content, _LEVEL)
+    packed = _stored(content) if len(content) <= _FEW else zlib.compress(content, _LEVEL)
     # How many blocks, their size, that of a last one that is smaller, and compressed.
     sizes = np.array([1, len(content), 0, len(packed)], "<u8")
     return _base64(sizes.tobytes()) + _base64(packed)
+
+
+def _stored(content: bytes) -> bytes:
+    """Return up to 65535 bytes in zlib's format, as they are (RFC 1950, 1951 3.2.4)."""
+    size = len(content)
+    head = struct.pack("<2sBHH", b"\x78\x01", 1, size, size ^ 0xFFFF)
+    return head + content + struct.pack(">I", zlib.adler32(content))
 
 
 def _base64(content: bytes) -> str:

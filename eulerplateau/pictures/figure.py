@@ -39,7 +39,6 @@ VERMILION, PURPLE, SKY = "#D55E00", "#CC79A7", "#56B4E9"
 _UNDATED: dict[str, dict[str, None]] = {
     "pdf": {"CreationDate": None},
     "svg": {"Date": None},
-    "png": {},
 }
 _DPI = 300
 # Type 42: text in a PDF stays text.
@@ -184,8 +183,24 @@ def save(figure: Figure, path: Path) -> None:
     }
     _fix_layout(figure, form)
     with rc_context(settings):
-        figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
+        if form == "png":
+            _write_png(figure, content)
+        else:
+            figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
     write_whole(path, content.getvalue())
+
+
+def _write_png(figure: Figure, file: io.BytesIO) -> None:
+    """Write a figure as matplotlib does, but for what is transparent nowhere."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from PIL import Image
+
+    figure.set_dpi(_DPI)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[:, :, :3])
+    # Less than a seventh longer than at the default, in half of the time.
+    Image.fromarray(pixels).save(file, "png", dpi=(_DPI, _DPI), compress_level=3)
 
 
 def lay_out(figure: Figure) -> None:

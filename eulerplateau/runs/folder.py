@@ -48,8 +48,6 @@ from eulerplateau.runs.table import RowWriter, has_row
 
 # At most so much of the work is lost with the power.
 _SECOND = 1.0
-# So many shapes are listed in next to no time.
-_FEW = 200
 
 
 class RunFolder:
@@ -155,7 +153,7 @@ class RunFolder:
         self._load, self._unlisted = row.load_name, True
         now, spent = time.monotonic(), self._list_shapes_seconds
         # The list of all shapes is as long as the run: to write it costs ever more.
-        if len(self._shapes) <= _FEW or now - self._listed >= 20 * spent:
+        if now - self._listed >= 20 * spent:
             self._list_shapes()
         self._rows.append(row)
         self._unsynced += self._shapes[-1].files

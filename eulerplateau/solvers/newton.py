@@ -19,8 +19,8 @@ from typing import Protocol
 
 import numpy as np
 
+from eulerplateau import film as films
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import AreaFilm, Film, PlaneFilm, QuadraticFilm
 from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
@@ -74,9 +74,12 @@ def _search_for(problem: Problem) -> Search:
 
         return search
     match problem.film:
-        case AreaFilm():
+        # First, so that who has springs loads no other film.
+        case films.QuadraticFilm():
+            from eulerplateau.solvers.quadratic import search
+        case films.AreaFilm():
             from eulerplateau.solvers.soap import search
-        case PlaneFilm():
+        case films.PlaneFilm():
             from eulerplateau.solvers.in_plane.search import search
         case _:
             from eulerplateau.solvers.quadratic import search
@@ -108,10 +111,10 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     return modes
 
 
-def models_for(film: Film, loop: Loop, energy: LoopEnergy) -> Models:
+def models_for(film: films.Film, loop: Loop, energy: LoopEnergy) -> Models:
     """Return how the second variation of a film's energy is looked at."""
     match film:
-        case QuadraticFilm():
+        case films.QuadraticFilm():
             from eulerplateau.solvers.quadratic_models import quadratic_models
 
             return quadratic_models(loop, energy)

@@ -16,7 +16,7 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, SpecError
 from eulerplateau.film import Film, FilmOfLoop, make_film
-from eulerplateau.loop import Loop, Rod, kernels, largest_turning, remove_sliding
+from eulerplateau.loop import Loop, Rod, largest_turning, remove_sliding
 from eulerplateau.mesh import Disk, Shape
 from eulerplateau.solvers.equilibrium import (
     LARGEST_LOAD,
@@ -132,11 +132,8 @@ class Problem:
 
     def bending_energy(self, shape: Shape) -> tuple[float, FloatArray]:
         """Return the loop's bending energy and its gradient (n_v, 3)."""
-        gradient = np.zeros_like(shape.x)
-        energy = kernels.bending_energy_gradient(
-            shape.x, shape.loop, self.loop.rest_lengths, gradient
-        )
-        return energy, gradient
+        loop, x = self.loop, shape.x_loop
+        return loop.bending_energy(x), self.on_loop(shape, loop.bending_force(x))
 
     def energy(self, shape: Shape, load: float) -> float:
         """Return the energy of film and loop together."""
@@ -227,7 +224,7 @@ class Problem:
         status: Status,
         pushes: FloatArray | None = None,
     ) -> Equilibrium:
-        """Record a shape with all its numbers computed by the kernels on the full mesh."""
+        """Record a shape with all its numbers computed on the full mesh."""
         film, pull = self.film.energy_gradient(shape, load)
         bending, terms = self.bending_energy(shape)[0], self.loop.terms.items()
         loop = {name: term.energy(shape.x_loop) for name, term in terms}

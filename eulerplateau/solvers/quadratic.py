@@ -10,7 +10,6 @@ from eulerplateau.loop import Loop, close_with_lengths
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent
 from eulerplateau.solvers.equilibrium import RESIDUAL_TOLERANCE, Equilibrium, Status
-from eulerplateau.solvers.large_loops.coarse_start import coarsen, is_rough
 from eulerplateau.solvers.models import Models
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
@@ -55,6 +54,8 @@ def _start(
     given = close_with_lengths(loop, x)
     if len(x) <= DENSE_LOOP:
         return given
+    from eulerplateau.solvers.large_loops.coarse_start import coarsen, is_rough
+
     coarse = coarsen(loop, DENSE_LOOP)
     shape = coarse.start(x)
     if shape is None:

@@ -16,7 +16,6 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.solvers.equilibrium import Settled, Stability
-from eulerplateau.solvers.large_loops.subspace_model import lowest_modes, subspace_model
 from eulerplateau.solvers.models import DenseModels, Model, Models
 from eulerplateau.solvers.primal_dual import settle
 from eulerplateau.solvers.second_variation import TangentModel
@@ -55,7 +54,7 @@ class QuadraticModels(_OneMatrix):
 
 @dataclass(frozen=True)
 class SubspaceModels(_OneMatrix):
-    """A subspace of the tangent space of a large loop at a time."""
+    """A subspace of the tangent space of a large loop, loaded where there is one."""
 
     @property
     def always_classified(self) -> bool:
@@ -64,16 +63,23 @@ class SubspaceModels(_OneMatrix):
 
     def at(self, x: FloatArray, before: Model | None = None) -> TangentModel:
         """Return the model at a loop (n_b, 3)."""
+        from eulerplateau.solvers.large_loops.subspace_model import subspace_model
+
         near = None if before is None else before.dense
         return subspace_model(self.energy, self.loop, self.matrix, x, near)
 
     def spectrum(self, model: Model) -> Stability:
         """Return the lowest eigenvalues: every one that is not stable, and one more."""
-        return lowest_modes(self.loop, self.matrix, model.dense)[0]
+        return self._lowest(model)[0]
 
     def modes(self, model: Model, count: int) -> FloatArray:
         """Return as many modes (3 n_b, m) as are unstable or neutral, and one more."""
-        return lowest_modes(self.loop, self.matrix, model.dense)[1][:, :count]
+        return self._lowest(model)[1][:, :count]
+
+    def _lowest(self, model: Model) -> tuple[Stability, FloatArray]:
+        from eulerplateau.solvers.large_loops.subspace_model import lowest_modes
+
+        return lowest_modes(self.loop, self.matrix, model.dense)
 
 
 def quadratic_models(loop: Loop, energy: LoopEnergy) -> Models:

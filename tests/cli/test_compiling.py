@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import numba
-
-from eulerplateau.cli.compiling import telling_of_compiling
+from eulerplateau.compiled import njit
+from eulerplateau.compiling import telling_of_compiling
 
 
 def test_first_call_alone_says_that_it_compiles() -> None:
     said: list[str] = []
-    successor = numba.njit(lambda number: number + 1)
+    successor = njit(lambda number: number + 1)
     with telling_of_compiling(said.append):
         assert successor(1) == 2
         told = len(said)
         assert successor(2) == 3
-    numba.njit(lambda number: number - 1)(1)
+    njit(lambda number: number - 1)(1)
     assert told == len(said) > 0
     assert "compiling" in said[0]

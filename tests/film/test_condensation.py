@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.condensation import Condensation, condense
+from eulerplateau.film.condensation import Condensation
 from eulerplateau.film.quadratic import QuadraticFilm, dirichlet, springs
 from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes
@@ -114,8 +114,8 @@ def test_film_without_interior_vertices_is_its_own_condensation() -> None:
     angle = np.pi / 4 * np.arange(8)
     fan = np.array([(0, i, i + 1) for i in range(1, 7)])
     mesh = shapes.mesh_of(np.stack([np.cos(angle), np.sin(angle)], axis=1), fan)
-    laplacian = springs(mesh).laplacian()
-    condensed = condense(laplacian, mesh.loop, mesh.interior)
+    film = springs(mesh)
+    laplacian, condensed = film.laplacian(), film.of_loop(film.rest).condensed
     b = mesh.loop
     np.testing.assert_allclose(condensed.stiffness, laplacian.toarray()[np.ix_(b, b)])
     around = wild_loop(mesh)
@@ -131,8 +131,8 @@ def test_stiffness_of_a_disk_converges_to_the_dirichlet_to_neumann_map() -> None
     errors: dict[int, list[float]] = {1: [], 2: [], 4: []}
     for rings in sizes:
         mesh = shapes.mesh_of(*shapes.disk_points(rings))
-        laplacian = dirichlet(mesh).laplacian()
-        stiffness = condense(laplacian, mesh.loop, mesh.interior).stiffness
+        film = dirichlet(mesh)
+        stiffness = film.of_loop(film.rest).condensed.stiffness
         phi = np.arctan2(*mesh.x[mesh.loop].T[1::-1])
         for n, found in errors.items():
             found.append(

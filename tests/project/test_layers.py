@@ -35,6 +35,8 @@ GROUND = {
     "__init__",
     "__main__",
     "arrays",
+    "compiled",
+    "compiling",
     "errors",
     "interruption",
     "settings",

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from scipy.sparse.csgraph import connected_components
 
-from eulerplateau.film.condensation import condense
 from eulerplateau.film.dissection import dissect
 from eulerplateau.film.quadratic import springs
 from eulerplateau.mesh.disk import Disk
@@ -45,8 +44,8 @@ def test_what_is_eliminated_first_falls_apart_into_small_pieces(large: Disk) -> 
 
 
 def test_film_is_relaxed_and_stiffness_is_its_pull_on_the_loop(large: Disk) -> None:
-    laplacian = springs(large).laplacian()
-    condensed = condense(laplacian, large.loop, large.interior)
+    film = springs(large)
+    laplacian, condensed = film.laplacian(), film.of_loop(film.rest).condensed
     around = shapes.crumpled(large, 0.1)[large.loop]
     force = laplacian @ condensed.extend(around)
     scale = np.abs(force).max()
@@ -61,8 +60,8 @@ def test_loop_without_interior_has_its_own_stiffness() -> None:
         np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),
         np.array([[0, 1, 2], [0, 2, 3]]),
     )
-    laplacian = springs(mesh).laplacian()
-    condensed = condense(laplacian, mesh.loop, mesh.interior)
+    film = springs(mesh)
+    laplacian, condensed = film.laplacian(), film.of_loop(film.rest).condensed
     expected = laplacian.toarray()[np.ix_(mesh.loop, mesh.loop)]
     np.testing.assert_array_equal(condensed.stiffness, expected)
     np.testing.assert_array_equal(condensed.extend(mesh.x[mesh.loop]), mesh.x)

@@ -13,9 +13,9 @@ from itertools import chain, pairwise
 from typing import Self
 
 import numpy as np
-from scipy.optimize import brentq
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.brent import zero_between
 from eulerplateau.branches.conformal.contact_eight import reached, touching
 from eulerplateau.branches.conformal.films import checked
 from eulerplateau.branches.conformal.touching import Touching, in_contact, way
@@ -122,7 +122,7 @@ def _crossed(
         return what(reached(closest, {**closest.values, "load": value}, 1.0))
 
     low, high = sorted(film.values["load"] for film in near)
-    return float(brentq(at, low, high, rtol=_FOUND))
+    return zero_between(at, low, high, 2e-12, _FOUND)
 
 
 def _convexity(film: Touching) -> float:

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from enum import Enum
 from itertools import chain, islice, pairwise
 
-from scipy.optimize import brentq
-
+from eulerplateau.branches.brent import zero_between
 from eulerplateau.branches.conformal.by_writhe import (
     CONTROL,
     NARROWEST,
@@ -238,7 +237,7 @@ def _located(before: BranchPoint, after: BranchPoint, held: _Held) -> BranchPoin
     def off(value: float) -> float:
         return held(at(value)) - held.wanted
 
-    return at(float(brentq(off, before.value, after.value, xtol=_FOUND)))
+    return at(zero_between(off, before.value, after.value, _FOUND))
 
 
 def _with_rod(point: BranchPoint, values: Mapping[str, float]) -> BranchPoint:

@@ -13,9 +13,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.compiled import njit
 
 
 @njit(cache=True)

@@ -15,9 +15,9 @@ of the points; k, sign, base, c : (m,); q : the nome.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.compiled import njit
 
 # Of the angle between tangents at neighbouring points, and of their lengths.
 _LEAST_COSINE, _LARGEST_RATIO = 0.866, 1.5

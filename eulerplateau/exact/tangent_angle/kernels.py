@@ -22,9 +22,9 @@ in this file (numba #1833).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.compiled import njit
 
 # Points on half a lobe beyond one for each harmonic: what quadrature misses is e^{i phi}'s
 # coefficients from this far above the harmonics, less than what truncation does.

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.compiled import njit
 
 
 @njit(cache=True, error_model="numpy")

@@ -16,9 +16,9 @@ loop does not turn. Helpers stay in this file (numba #1833).
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.compiled import njit
 
 
 @njit(cache=True, error_model="numpy")

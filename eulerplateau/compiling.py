@@ -5,18 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+_TOLD: list[Callable[[str], object]] = []
+
 
 @contextmanager
 def telling_of_compiling(say: Callable[[str], object]) -> Iterator[None]:
     """Say so, inside this context, when Numba compiles and does not only load."""
-    from numba.core.event import Event, Listener, install_listener
-
-    class Told(Listener):
-        def on_start(self, event: Event) -> None:
-            say("compiling, once: it takes some seconds")
-
-        def on_end(self, event: Event) -> None:
-            pass
-
-    with install_listener("numba:compile", Told()):
+    _TOLD.append(say)
+    try:
         yield
+    finally:
+        _TOLD.remove(say)
+
+
+def tell() -> None:
+    """Say to all who listen that something is compiled."""
+    for say in _TOLD:
+        say("compiling, once: it takes some seconds")

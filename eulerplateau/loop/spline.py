@@ -181,7 +181,8 @@ class SplineLoop:
         turn = np.array([cross(axis, normal) for axis in np.eye(3)])
         half = 0.5 * _WEIGHTS[:, None]
         coupled = np.matmul(_VALUE.T, half * _FIRST) - np.matmul(_FIRST.T, half * _VALUE)
-        return np.matmul(_along(coupled, self.data), turn)
+        gradient: FloatArray = np.matmul(_along(coupled, self.data), turn)
+        return gradient
 
     @property
     def middles(self) -> FloatArray:

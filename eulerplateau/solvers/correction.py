@@ -33,7 +33,7 @@ from eulerplateau.film import AreaFilm, AreaOfLoop
 from eulerplateau.film.curved_film import SmoothFilm, SmoothFilmAtRest, smooth_film
 from eulerplateau.loop import Loop, SplineLoop, Splines
 from eulerplateau.mesh import Shape
-from eulerplateau.solvers.equilibrium import Equilibrium
+from eulerplateau.solvers.equilibrium import LENGTH_TOLERANCE, Equilibrium
 from eulerplateau.solvers.large_loops.film_models import FilmModel, FilmModels
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.threads import one_thread
@@ -149,11 +149,12 @@ def _check(problem: Problem, found: Equilibrium) -> None:
         raise SpecError("loop", f"resists {names}; only what bends alone is corrected")
     if problem.loop.diameter is not None:
         raise SpecError("diameter", "should be none: a loop in contact is not corrected")
-    if len(found.shape.loop) != len(problem.loop.rest_lengths):
-        raise SpecError("found", "is an equilibrium of another problem")
     if not found.converged:
         said = f"{found.status.value}; only what has converged is corrected"
         raise NotConvergedError(f"the equilibrium is {said}", found.status.value)
+    same = np.array_equal(found.shape.loop, problem.disk.loop)
+    if not same or problem.length_error(found.shape) > LENGTH_TOLERANCE:
+        raise SpecError("found", "is an equilibrium of another problem")
 
 
 def _corrected(problem: Problem, found: Equilibrium) -> Corrected:

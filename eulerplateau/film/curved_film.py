@@ -40,13 +40,11 @@ class SmoothFilmAtRest:
     ----------
     area : float
     gradient : (n_b, 6, 3) float, of its area by the loop's data
-    vertices : (n_v, 3) float
     heights : (size,) float, of its nodes over where they follow the loop: to begin the next
     """
 
     area: float
     gradient: FloatArray
-    vertices: FloatArray
     heights: FloatArray
 
 
@@ -57,6 +55,9 @@ class SmoothFilm(Protocol):
         self, loop: SplineLoop, before: SmoothFilmAtRest | None
     ) -> SmoothFilmAtRest:
         """Return the film on a loop, one on a loop near by being known."""
+
+    def vertices(self, loop: SplineLoop, found: SmoothFilmAtRest) -> FloatArray:
+        """Return the vertices (n_v, 3) of a film that was found on a loop."""
 
 
 def smooth_film(film: AreaOfLoop, x_loop: FloatArray) -> SmoothFilm:
@@ -74,12 +75,15 @@ class FlatFilm:
     def at_rest(
         self, loop: SplineLoop, before: SmoothFilmAtRest | None
     ) -> SmoothFilmAtRest:
-        """Return the film on a loop; its vertices follow that one's."""
+        """Return the film on a loop."""
         spanned = loop.spanned
         area = float(np.linalg.norm(spanned))
-        x = _following(self.plane, loop)
         gradient = loop.spanned_gradient(spanned / area)
-        return SmoothFilmAtRest(area, gradient, x, np.zeros(0))
+        return SmoothFilmAtRest(area, gradient, np.zeros(0))
+
+    def vertices(self, loop: SplineLoop, found: SmoothFilmAtRest) -> FloatArray:
+        """Return vertices (n_v, 3) that follow the loop: they may lie anywhere."""
+        return _following(self.plane, loop)
 
 
 @dataclass(frozen=True)
@@ -114,21 +118,25 @@ class CurvedNeighbour:
             film = self.triangles.at(base + heights[:, None] * self.normals)
             forces = (film.gradient * self.normals).sum(axis=1)
             if np.abs(forces).max() <= _AT_REST * np.abs(film.gradient).max():
-                return self._found(loop, film, base, heights)
+                return self._found(loop, film, heights)
             heights = heights + self._step(film, -forces)
         raise LinAlgError("the curved film does not come to rest")
 
+    def vertices(self, loop: SplineLoop, found: SmoothFilmAtRest) -> FloatArray:
+        """Return the corners (n_v, 3) of its triangles."""
+        n_v = self.triangles.n_v
+        rising = found.heights[:n_v, None] * self.normals[:n_v]
+        return _following(self.plane, loop) + rising
+
     def _found(
-        self, loop: SplineLoop, film: CurvedFilm, base: FloatArray, heights: FloatArray
+        self, loop: SplineLoop, film: CurvedFilm, heights: FloatArray
     ) -> SmoothFilmAtRest:
         """Return the film at rest, its force by the way in which nodes follow the loop."""
-        n_v = self.triangles.n_v
         inside = film.gradient.copy()
         inside[self._middles] = 0.0
         gradient = loop.middles_gradient(film.gradient[self._middles])
         gradient[:, 0] += self.plane.local.carry(self.triangles.gathered(inside))
-        vertices = base[:n_v] + heights[:n_v, None] * self.normals[:n_v]
-        return SmoothFilmAtRest(film.area, gradient, vertices, heights)
+        return SmoothFilmAtRest(film.area, gradient, heights)
 
     def _step(self, film: CurvedFilm, forces: FloatArray) -> FloatArray:
         """Return the heights (size,) that balance forces (size,), nearly."""

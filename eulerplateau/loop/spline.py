@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from eulerplateau.arrays import FloatArray, IntArray
@@ -41,8 +41,13 @@ _T, _WEIGHTS = np.polynomial.legendre.leggauss(_POINTS)
 _T, _WEIGHTS = 0.5 * (_T + 1), 0.5 * _WEIGHTS
 _VALUE, _FIRST, _SECOND = (_hermite(_T, order) for order in range(3))
 _MIDDLE = _hermite(np.array([0.5]), 0)
-# The third and the fourth derivative at the beginning and at the end.
-_ENDS = tuple((order, _hermite(np.array([0.0, 1.0]), order)) for order in (3, 4))
+# Jumps of the third and the fourth derivative (2, 2, 2, 3): by order, the edge before a
+# vertex and, negative, the one after it, its beginning and end, the power of its length.
+_ORDERS = np.array([3, 4]).reshape(2, 1, 1, 1, 1)
+_POWERS = np.arange(3)[:, None]
+_JUMPS = np.stack(
+    [[_hermite(np.ones(1), order)[0], -_hermite(np.zeros(1), order)[0]] for order in (3, 4)]
+).reshape(2, 2, 2, 3)
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -106,21 +111,21 @@ class Splines:
 
         The unknowns are x' and x'' at vertex 0, at vertex 1, ...
         """
-        n, h, at = len(self.lengths), self.lengths, np.arange(len(self.lengths))
-        after = self._after
-        pieces = ((1, h, at, after), (0, h[after], after, after[after]))
-        row, column, entry = [], [], []
-        for equation, (order, ends) in enumerate(_ENDS):
-            for end, length, first, last in pieces:
-                sign = 1 if end else -1
-                for number, weight in enumerate(ends[end]):
-                    vertex, power = (last if number > 2 else first), number % 3
-                    row.append(2 * at + equation)
-                    column.append(2 * vertex + power - 1 if power else 2 * n + vertex)
-                    entry.append(sign * weight * h**order * length ** (power - order))
-        places = (np.concatenate(row), np.concatenate(column))
-        whole = csc_array((np.concatenate(entry), places), shape=(2 * n, 3 * n))
-        return whole[:, : 2 * n], csr_array(-whole[:, 2 * n :])
+        n, h, after = len(self.lengths), self.lengths, self._after
+        # By order, edge, its end, power of its length, and vertex: (2, 2, 2, 3, n).
+        lengths = np.stack([h, h[after]])
+        entry = _JUMPS[..., None] * (h / lengths)[:, None, None] ** _ORDERS
+        entry = entry * lengths[:, None, None] ** _POWERS
+        at = np.arange(n)
+        vertex = np.stack([[at, after], [after, after[after]]])[None, :, :, None]
+        row = np.broadcast_to(2 * at + _ORDERS - _ORDERS.min(), entry.shape)
+        column = np.broadcast_to(2 * vertex + _POWERS - 1, entry.shape)
+        inside = (..., slice(1, None), slice(None))
+        known = (..., slice(0, 1), slice(None))
+        columns = np.broadcast_to(vertex, entry[known].shape)
+        matrix = _sparse(entry[inside], row[inside], column[inside], (2 * n, 2 * n))
+        knots = _sparse(-entry[known], row[known], columns, (2 * n, n))
+        return csc_array(matrix), csr_array(knots)
 
 
 @dataclass(frozen=True)
@@ -178,7 +183,8 @@ class SplineLoop:
 
         d(r x r') . n = dr . (r' x n) + dr' . (n x r).
         """
-        turn = np.array([cross(axis, normal) for axis in np.eye(3)])
+        x, y, z = normal.tolist()
+        turn = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         half = 0.5 * _WEIGHTS[:, None]
         coupled = np.matmul(_VALUE.T, half * _FIRST) - np.matmul(_FIRST.T, half * _VALUE)
         gradient: FloatArray = np.matmul(_along(coupled, self.data), turn)
@@ -207,3 +213,9 @@ def _along(basis: FloatArray, data: FloatArray) -> FloatArray:
 def _adjoint(basis: FloatArray, forces: FloatArray) -> FloatArray:
     """Return the gradient by data (n, 6, 3) of what forces (n, m, 3) do on such sums."""
     return _along(basis.T, forces)
+
+
+def _sparse(
+    entry: FloatArray, row: IntArray, column: IntArray, shape: tuple[int, int]
+) -> coo_array:
+    return coo_array((entry.ravel(), (row.ravel(), column.ravel())), shape=shape)

@@ -170,7 +170,8 @@ def _corrected(problem: Problem, found: Equilibrium) -> Corrected:
     for number, (state, step) in enumerate(_steps(problem.loop, model, smooth)):
         first = first or step
         if step <= max(_LAST * first**2, _ROUNDING):
-            return _record(found, state, number)
+            x = smooth.film.vertices(state.loop, state.film)
+            return _record(found, state, x, number)
         if not step < 1:  # farther than the loop is long
             break
     raise NotConvergedError("the correction does not settle: the mesh is too coarse for it")
@@ -248,9 +249,10 @@ def _mixed(known: list[tuple[FloatArray, FloatArray]], weights: FloatArray) -> F
     return mixed
 
 
-def _record(found: Equilibrium, state: _State, corrections: int) -> Corrected:
+def _record(
+    found: Equilibrium, state: _State, x: FloatArray, corrections: int
+) -> Corrected:
     area, bending = state.film.area, state.loop.bending
-    x = state.film.vertices.copy()
     x[found.shape.loop] = state.loop.vertices
     return Corrected(
         found=found,

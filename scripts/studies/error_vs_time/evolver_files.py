@@ -122,7 +122,7 @@ _MULTIPLIERS = ("m 0;", "g;")
 
 
 def _script(in_plane: bool, prepare: list[str], step: str, repeat_while: str) -> str:
-    """Repeat `step`; print energy, steps, last decrease, bending, and the loop's positions."""
+    """Repeat `step`; print energy, steps, last decrease, bending; the loop's positions."""
     loop_free = [] if in_plane else ["set vertex no_hessian_normal where on_loop;"]
     z = "0" if in_plane else "vv.z"
     rows = [

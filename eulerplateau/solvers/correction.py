@@ -23,14 +23,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import NotConvergedError, SpecError
-from eulerplateau.film import AreaFilm, AreaOfLoop
-from eulerplateau.film.curved_film import SmoothFilm, SmoothFilmAtRest, smooth_film
+from eulerplateau.film import (
+    AreaFilm,
+    AreaOfLoop,
+    SmoothFilm,
+    SmoothFilmAtRest,
+    smooth_film,
+)
 from eulerplateau.loop import Loop, SplineLoop, Splines
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.equilibrium import LENGTH_TOLERANCE, Equilibrium
@@ -141,9 +147,12 @@ def corrected(problem: Problem, found: Equilibrium) -> Corrected:
 
 def _check(problem: Problem, found: Equilibrium) -> None:
     """Refuse what there is no correction of."""
-    if not isinstance(problem.film, AreaFilm):
-        name = type(problem.film).__name__
-        raise SpecError("film", f'found {name}; only "area" in space is corrected')
+    match problem.film:
+        case AreaFilm():
+            pass
+        case film:
+            name = type(film).__name__
+            raise SpecError("film", f'found {name}; only "area" in space is corrected')
     if problem.loop.terms:
         names = ", ".join(problem.loop.terms)
         raise SpecError("loop", f"resists {names}; only what bends alone is corrected")
@@ -158,8 +167,7 @@ def _check(problem: Problem, found: Equilibrium) -> None:
 
 
 def _corrected(problem: Problem, found: Equilibrium) -> Corrected:
-    film = problem.film.of_loop(found.shape)
-    assert isinstance(film, AreaOfLoop)
+    film = cast(AreaOfLoop, problem.film.of_loop(found.shape))
     x = found.shape.x_loop
     models = FilmModels(
         film.energy(problem.loop, found.load), film, problem.loop, found.load

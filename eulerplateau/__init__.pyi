@@ -19,9 +19,11 @@ from .mesh import (
 )
 from .runs import read_run as read_run, read_shape as read_shape, run as run
 from .solvers import (
+    Corrected as Corrected,
     Equilibrium as Equilibrium,
     Problem as Problem,
     Status as Status,
+    corrected as corrected,
     solve as solve,
     sweep as sweep,
 )

@@ -10,6 +10,7 @@
                   to a discrete minimal surface (minimal_surface.py); area_term.py: its
                   energy
     with_loop.py  film and loop in one sparse matrix, factorised by indefinite.py
+    curved_film.py  the film on a smooth loop, of curved triangles (curved_triangles.py)
     repair.py     thin triangles replaced (flips.py); harmonic.py: how it follows its loop
     plane.py      a soap film kept in its plane; plane_mesh.py: how its mesh follows
 

@@ -1,4 +1,9 @@
 from .area import AreaFilm as AreaFilm, AreaOfLoop as AreaOfLoop
+from .curved_film import (
+    SmoothFilm as SmoothFilm,
+    SmoothFilmAtRest as SmoothFilmAtRest,
+    smooth_film as smooth_film,
+)
 from .indefinite import (
     IndefiniteFactor as IndefiniteFactor,
     negative_pivots as negative_pivots,

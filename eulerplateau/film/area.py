@@ -126,7 +126,7 @@ class AreaFilm:
     def of_loop(self, near: Shape) -> AreaOfLoop:
         """Return the film as a function of its loop near a shape, on its triangles."""
         for known in self._recent:
-            if known.reference.x is near.x and known.reference.triangles is near.triangles:
+            if known.local.tiling.triangles is near.triangles and known.rests_at(near.x):
                 return known
         return self._near(self.tiling(near.triangles), near.x)
 
@@ -165,6 +165,10 @@ class AreaOfLoop:
     def reference(self) -> Shape:
         """The shape it was made at."""
         return Shape(self.local.x, self.local.tiling.triangles, self.film.loop)
+
+    def rests_at(self, x: FloatArray) -> bool:
+        """Return whether it was made at these very vertices, or rests at them there."""
+        return x is self.local.x or self.local.rests_at(x)
 
     def project(self, x: FloatArray) -> FloatArray:
         """Return the positions (n, 3) as they are."""

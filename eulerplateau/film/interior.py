@@ -210,6 +210,10 @@ class LocalFilm(ABC):
         self._recent[:] = [found, *self._recent[:1]]
         return found
 
+    def rests_at(self, x: FloatArray) -> bool:
+        """Return whether these very vertices are those of a film asked for, not tilted."""
+        return any(known.x is x and known.central for known in self._recent)
+
     def begin_at(self, x: FloatArray, u: FloatArray) -> None:
         """Forget the films asked for but one at rest, x (n_v, 3): the next begins there."""
         sides = self.tiling.sides(x)

@@ -11,6 +11,7 @@
     lengths.py   how the lengths of its edges are kept, or not; how a loop is closed again
     free_bending.py, line_tension.py, adhesions.py  terms of a polygon in the plane whose
                  length is free (edges.py); equal_edges.py: pieces of equal edges
+    spline.py    the smooth loop through the vertices
     motions.py   what costs no energy: rigid motions, sliding along itself
 
 Of the other rooms this one knows nothing. Loops are arrays (n, 3), or (n, 2) in a plane;

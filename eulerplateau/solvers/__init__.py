@@ -7,6 +7,7 @@
     descent.py    downhill to a minimum, on trust_region.py; primal_dual.py: the fast end
     second_variation.py  Hessian and spectrum at one loop, by tangent_coordinates.py;
                   models.py, quadratic_models.py: of which part, large_loops/ for large ones
+    correction.py  an equilibrium to a higher order than its mesh's
     conjugate_gradient.py  the paper's method, by augmented_lagrangian.py, in the unknowns
                   of trial_space.py and variables.py; plain_gradient.py: as the paper has it
 

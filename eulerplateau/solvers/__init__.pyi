@@ -1,6 +1,7 @@
 from .contact.keeping import CLOSED as CLOSED, Keeping as Keeping, Touching as Touching
 from .contact.record import contacts_at as contacts_at
 from .contact.separation import separated as separated
+from .correction import Corrected as Corrected, corrected as corrected
 from .descent import (
     Descent as Descent,
     change_of_energy as change_of_energy,

@@ -21,7 +21,7 @@ from eulerplateau.solvers.renewal import Reached, elsewhere, near_shapes
 from eulerplateau.threads import one_thread
 
 # Loops of more vertices are not condensed: film and loop are looked at together.
-_DENSE = 48
+_DENSE = 16
 # A rough start of a large loop is smoothed to what a loop of so many vertices can show.
 _SMOOTH = DENSE_LOOP // 2
 # Degrees by which a crumpled loop turns at some vertex: no soap film is sought across it.

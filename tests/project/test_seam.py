@@ -14,8 +14,9 @@ ROOT = Path(eulerplateau.__file__).parent
 FILES = {path.relative_to(ROOT).as_posix(): path for path in sorted(ROOT.rglob("*.py"))}
 
 FILMS = {"QuadraticFilm", "AreaFilm", "PlaneFilm"}
-# The solver chooses its search by the film, conjugate gradients their unknowns.
-TOLD_APART = {"solvers/newton.py", "solvers/trial_space.py"}
+# The solver chooses its search by the film, conjugate gradients their unknowns; and soap
+# films alone are corrected.
+TOLD_APART = {"solvers/correction.py", "solvers/newton.py", "solvers/trial_space.py"}
 
 
 def names(code: ast.AST) -> set[str]:

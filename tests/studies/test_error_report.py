@@ -17,6 +17,7 @@ from scripts.studies.error_vs_time.arithmetic import (
     seconds_to,
 )
 from scripts.studies.error_vs_time.conformal import mesh_free, mesh_free_repeats
+from scripts.studies.error_vs_time.equal_error import equal_error, pairs
 from scripts.studies.error_vs_time.ours import solvers
 from scripts.studies.error_vs_time.picture import MARKERS, draw
 from scripts.studies.error_vs_time.records import (
@@ -134,6 +135,8 @@ def measured(scene: str, solver: str, edges: int, cpu: float, value: float) -> M
         error=float("nan"),
         shape_error=0.0,
         status="converged",
+        area_error=0.0,
+        bending_error=0.0,
     )
 
 
@@ -249,6 +252,40 @@ def test_without_a_limit_the_errors_are_unknown_and_the_points_left_out() -> Non
     runs = with_errors([measured(scene, "newton", n, 1.0, v) for n, v in values])
     assert np.isnan([run.error for run in runs]).all()
     assert points(runs) == []
+
+
+def erring(solver: str, edges: int, cpu: float, **errors: float) -> Measurement:
+    """A run whose energy errs by little, its parts by what is said."""
+    run = replace(measured(SPACE[0], solver, edges, cpu, 1.0), error=1e-9)
+    return replace(run, **errors)  # type: ignore[arg-type]
+
+
+def test_at_equal_error_the_first_mesh_that_is_as_good_in_all_is_compared() -> None:
+    """With Evolver's faster way; one of the three errors alone makes a mesh too coarse."""
+    ours = "newton, corrected"
+    runs = [
+        erring("evolver", 36, 0.1, bending_error=1e-2),  # coarser than what is compared
+        erring("evolver", 72, 3.0, bending_error=1e-3, area_error=1e-4),
+        erring("evolver, coarse to fine", 72, 2.0, bending_error=1e-3, area_error=1e-4),
+        erring(ours, 24, 0.2, area_error=1e-2),
+        erring(ours, 30, 0.4, area_error=1e-6, shape_error=1e-3),
+        erring(ours, 36, 0.3, area_error=1e-6),
+        erring("newton", 72, 0.1, bending_error=1e-5),  # not what is compared
+    ]
+    [pair] = pairs(points(runs))
+    assert (pair.theirs.cpu, pair.ours.first.loop_edges) == (2.0, 30)
+    assert pair.ratio == pytest.approx(5.0)
+    table = equal_error({SPACE[0]: points(runs)})
+    assert table[-2].endswith("| 5 |")
+    assert equal_error({SPACE[0]: points(runs[:3])}) == []
+
+
+def test_what_is_not_known_is_not_as_good() -> None:
+    runs = [
+        erring("evolver", 72, 1.0, bending_error=1e-3),
+        erring("newton, corrected", 24, 1.0, area_error=float("nan")),
+    ]
+    assert list(pairs(points(runs))) == []
 
 
 def test_every_run_is_written_and_every_scene_drawn(tmp_path: Path) -> None:

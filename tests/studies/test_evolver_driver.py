@@ -128,7 +128,7 @@ def test_string_datafile_is_the_loop_in_order(oval: Disk) -> None:
 
 def output(ids: list[int], x: FloatArray, energy: float, decrease: float) -> str:
     """What the scripts print, among what Evolver echoes."""
-    rows = ["Enter command: quiet on;", f"RESULT {energy!r} 7 {decrease!r}"]
+    rows = ["Enter command: quiet on;", f"RESULT {energy!r} 7 {decrease!r} 54.5"]
     rows += [
         f"AT {i} {a!r} {b!r} {c!r}" for i, (a, b, c) in zip(ids, x.tolist(), strict=True)
     ]
@@ -141,7 +141,7 @@ def test_result_is_read_back_in_the_order_of_the_loop(oval: Disk, bent: FloatArr
     mixed = np.random.default_rng(0).permutation(oval.loop)
     run = evolver.parse(output((mixed + 1).tolist(), bent[mixed], 150.5, 0.0), data)
     assert np.array_equal(run.loop, bent[oval.loop])
-    assert (run.energy, run.steps, run.memory) == (150.5, 7, 2.0)
+    assert (run.energy, run.bending, run.steps, run.memory) == (150.5, 54.5, 7, 2.0)
 
 
 @pytest.mark.parametrize(
@@ -156,7 +156,7 @@ def test_converged_is_what_no_longer_changes(
     assert run.converged is converged
 
 
-@pytest.mark.parametrize("printed", ["", "ERROR 1234", "RESULT (NaN) 3 (NaN)"])
+@pytest.mark.parametrize("printed", ["", "ERROR 1234", "RESULT (NaN) 3 (NaN) (NaN)"])
 def test_output_without_a_result_is_refused(oval: Disk, printed: str) -> None:
     with pytest.raises(ValueError, match="Evolver"):
         evolver.parse(printed, string_datafile(oval, oval.x, SIGMA))

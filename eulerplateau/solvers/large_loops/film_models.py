@@ -143,11 +143,29 @@ class FilmModel:
 
     def moved(self, factor: IndefiniteFactor, forces: FloatArray) -> FloatArray:
         """Return the displacements (3 n, m) of least energy under forces (3 n, m)."""
-        n, n_i = len(forces), len(self.film.film.interior)
-        size = n_i + n + n // 3 + self.stiffness.n_held
-        rhs = np.zeros((size, forces.shape[1]))
-        rhs[n_i : n_i + n] = forces
-        return factor.solve(rhs)[n_i : n_i + n]
+        n = len(self.x)
+        return self._answer(factor, forces, np.zeros((n, forces.shape[1])))[: 3 * n]
+
+    def answered(
+        self, factor: IndefiniteFactor, forces: FloatArray, stretches: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return how a loop (n, 3) and its tensions (n,) answer to forces (n, 3).
+
+        While each edge gets longer by its `stretches` (n,).
+        """
+        n = len(self.x)
+        found = self._answer(factor, forces.reshape(-1, 1), stretches[:, None])[:, 0]
+        return found[: 3 * n].reshape(n, 3), self.stiffness.stiffness * found[3 * n :]
+
+    def _answer(
+        self, factor: IndefiniteFactor, forces: FloatArray, stretches: FloatArray
+    ) -> FloatArray:
+        """Return displacements and tensions, over the matrix's scale, as rows (4 n, m)."""
+        n, n_i = len(self.x), len(self.film.film.interior)
+        rhs = np.zeros((n_i + 4 * n + self.stiffness.n_held, forces.shape[1]))
+        rhs[n_i : n_i + 3 * n] = forces
+        rhs[n_i + 3 * n : n_i + 4 * n] = self.stiffness.stiffness * stretches
+        return factor.solve(rhs)[n_i : n_i + 4 * n]
 
     def _lowest(self, factor: IndefiniteFactor, bound: float) -> float:
         """Return the lowest eigenvalue, to `bound` or ten digits, of a positive spectrum.

@@ -28,6 +28,7 @@ from scripts.studies.error_vs_time.picture import draw
 from scripts.studies.error_vs_time.points import Place, as_measurement, summarise
 from scripts.studies.error_vs_time.records import (
     COARSE_TO_FINE,
+    CORRECTED,
     Measurement,
     read_csv,
     with_errors,
@@ -42,7 +43,9 @@ LEVELS = {"uniform": 4, "graded": 5, "fan": 5, "lattice": 4}
 COARSEST = 36
 # Without its interior a film's loop of 36 edges leads Evolver astray.
 COARSEST_IN_PLANE = 72
-SOLVERS = ("newton", "cg", CONFORMAL, TANGENT_ANGLE)
+# And of those that are corrected, before them.
+COARSER = (24, 30)
+SOLVERS = ("newton", f"newton{CORRECTED}", "cg", CONFORMAL, TANGENT_ANGLE)
 
 
 @click.group(invoke_without_command=True)
@@ -116,11 +119,13 @@ def measure_scene(
         coarsest = COARSEST_IN_PLANE if scene.in_plane else COARSEST
         levels = 4 if scene.in_plane else LEVELS[kind]
         meshes = [scene.mesh(kind, coarsest * 2**level) for level in range(levels)]
-        paths = [folder / f"{number}.npz" for number in range(levels)]
-        for path, mesh in zip(paths, meshes, strict=True):
-            write_mesh(path, mesh)
         for solver in filter(wanted, solvers(scene)):
-            for last, mesh in enumerate(meshes):
+            coarser = COARSER if solver.endswith(CORRECTED) else ()
+            ladder = [*(scene.mesh(kind, edges) for edges in coarser), *meshes]
+            paths = [folder / f"{number}.npz" for number in range(len(ladder))]
+            for path, mesh in zip(paths, ladder, strict=True):
+                write_mesh(path, mesh)
+            for last, mesh in enumerate(ladder):
                 first = 0 if solver.endswith(COARSE_TO_FINE) else last
                 place = Place(kind, mesh.n_b, mesh.n_v)
                 records = run_point(paths[first : last + 1], scene, solver)

@@ -98,6 +98,7 @@ def what(scene: Scene, film: ConformalFilm | PlaneLoop | None) -> dict[str, Any]
         "gyration": gyration(lengths, loop),
         "shape_error": distance(scene, lengths, loop),
         "status": Status.CONVERGED.value,
+        **scene.parts(film.area, film.energy - scene.load * film.area),
     }
 
 

@@ -39,6 +39,7 @@ class EvolverRun:
 
     Attributes
     ----------
+    bending : float, its part of the energy
     loop : (n_b, 3) float
     steps, cpu, wall :
         Newton steps and seconds, summed over the meshes of a sequence.
@@ -47,6 +48,7 @@ class EvolverRun:
     """
 
     energy: float
+    bending: float
     loop: FloatArray
     steps: int
     cpu: float
@@ -101,7 +103,7 @@ def parse(printed: str, data: Datafile) -> EvolverRun:
 
     Raises ValueError with the end of what was printed if there is no finite result.
     """
-    result = re.search(r"^RESULT (\S+) (\d+) (\S+)$", printed, re.MULTILINE)
+    result = re.search(r"^RESULT (\S+) (\d+) (\S+) (\S+)$", printed, re.MULTILINE)
     if result is None or "NaN" in printed:
         raise ValueError(f"Evolver gave no result: ... {printed[-300:]!r}")
     found = re.findall(r"^AT (\d+) (\S+) (\S+) (\S+)$", printed, re.MULTILINE)
@@ -110,6 +112,7 @@ def parse(printed: str, data: Datafile) -> EvolverRun:
     energy, decrease = float(result[1]), float(result[3])
     return EvolverRun(
         energy=energy,
+        bending=float(result[4]),
         loop=np.array([at[number] for number in data.loop.tolist()]),
         steps=int(result[2]),
         cpu=math.nan,

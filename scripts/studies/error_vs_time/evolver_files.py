@@ -122,7 +122,7 @@ _MULTIPLIERS = ("m 0;", "g;")
 
 
 def _script(in_plane: bool, prepare: list[str], step: str, repeat_while: str) -> str:
-    """Repeat `step`; print energy, steps and last decrease, then the loop's positions."""
+    """Repeat `step`; print energy, steps, last decrease, bending; the loop's positions."""
     loop_free = [] if in_plane else ["set vertex no_hessian_normal where on_loop;"]
     z = "0" if in_plane else "vv.z"
     rows = [
@@ -135,8 +135,8 @@ def _script(in_plane: bool, prepare: list[str], step: str, repeat_while: str) ->
         "hessian_epsilon := 1e-30;",
         *prepare,
         f"do {{ before := total_energy; {step} }} while ({repeat_while});",
-        'printf "RESULT %.17g %d %.17g\\n",',
-        "  total_energy, steps, before - total_energy;",
+        'printf "RESULT %.17g %d %.17g %.17g\\n",',
+        "  total_energy, steps, before - total_energy, bending.value;",
         "foreach vertex vv where on_loop do",
         f'  printf "AT %d %.17g %.17g %.17g\\n", vv.id, vv.x, vv.y, {z};',
         "",

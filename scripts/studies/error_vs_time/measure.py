@@ -13,8 +13,16 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.mesh import Disk, Shape
-from eulerplateau.solvers import Equilibrium, Problem, Status, solve
+from eulerplateau.solvers import (
+    Corrected,
+    Equilibrium,
+    Problem,
+    Status,
+    corrected,
+    solve,
+)
 from scripts.studies.common import peak_memory
+from scripts.studies.error_vs_time.records import CORRECTED
 from scripts.studies.error_vs_time.scenes import (
     Scene,
     gyration,
@@ -67,10 +75,10 @@ def timed(
 
 def solved(
     meshes: list[Disk], scene: Scene, solver: str
-) -> tuple[Equilibrium | tuple[float, int], float, float]:
+) -> tuple[Equilibrium | Corrected | tuple[float, int], float, float]:
     """Return what is found on the last mesh, and the wall seconds of set-up and solving.
 
-    Carrying the shape from mesh to mesh counts as solving.
+    Carrying the shape from mesh to mesh counts as solving, and so does correcting.
     """
     x, found, steps = scene.start(meshes[0]), None, 0
     set_up, started = 0.0, time.perf_counter()
@@ -89,11 +97,15 @@ def solved(
         if scene.saddle:
             found = saddle_in_plane(problem, problem.shape(x), scene.load)
         else:
-            found = solve(problem, scene.load, x, solver=solver)
+            method = solver.removesuffix(CORRECTED)
+            found = solve(problem, scene.load, x, solver=method)
         steps += found.iterations
     assert found is not None
+    result: Equilibrium | Corrected = replace(found, iterations=steps)
+    if solver.endswith(CORRECTED) and found.converged:
+        result = corrected(problem, found)
     total = time.perf_counter() - started
-    return replace(found, iterations=steps), set_up, total - set_up
+    return result, set_up, total - set_up
 
 
 def saddle_in_plane(problem: Problem, start: Shape, load: float) -> Equilibrium:
@@ -116,7 +128,7 @@ def saddle_in_plane(problem: Problem, start: Shape, load: float) -> Equilibrium:
 
 
 def what(
-    scene: Scene, mesh: Disk, found: Equilibrium | tuple[float, int]
+    scene: Scene, mesh: Disk, found: Equilibrium | Corrected | tuple[float, int]
 ) -> dict[str, Any]:
     """Return the part of a record that says what was found, not what it cost."""
     if isinstance(found, tuple):
@@ -129,12 +141,16 @@ def what(
             "status": "converged",
         }
     loop = found.shape.x_loop
+    solved = found.found if isinstance(found, Corrected) else found
     return {
         "value": found.energy,
-        "iterations": found.iterations,
+        "iterations": solved.iterations,
         "gyration": gyration(mesh.rest_lengths, loop),
         "shape_error": distance(scene, mesh.rest_lengths, loop),
-        "status": found.status.value,
+        "status": solved.status.value,
+        **scene.parts(
+            (found.energy - found.bending_energy) / scene.load, found.bending_energy
+        ),
     }
 
 

@@ -15,7 +15,12 @@ from eulerplateau.mesh import Disk
 from scripts.studies.error_vs_time.conformal import ladder, mesh_free, unknowns
 from scripts.studies.error_vs_time.measure import ENOUGH
 from scripts.studies.error_vs_time.points import TOO_SLOW, Place, as_measurement, summarise
-from scripts.studies.error_vs_time.records import COARSE_TO_FINE, HARMONICS, Measurement
+from scripts.studies.error_vs_time.records import (
+    COARSE_TO_FINE,
+    CORRECTED,
+    HARMONICS,
+    Measurement,
+)
 from scripts.studies.error_vs_time.scenes import Scene
 
 
@@ -31,9 +36,11 @@ def solvers(scene: Scene) -> tuple[str, ...]:
     if scene.threshold is not None:
         return ("newton",)
     from_coarse = f"newton{COARSE_TO_FINE}"
-    return (
-        ("newton", from_coarse) if scene.film == "area" else ("newton", from_coarse, "cg")
-    )
+    if scene.film != "area":
+        return ("newton", from_coarse, "cg")
+    if scene.in_plane:
+        return ("newton", from_coarse)
+    return ("newton", from_coarse, f"newton{CORRECTED}")
 
 
 def measure_mesh_free(scene: Scene) -> Iterator[Measurement]:

@@ -35,6 +35,7 @@ _BROWN = "#7A4A1E"
 MARKERS = {
     "newton": ("o", BLACK),
     "newton, coarse to fine": ("D", GREEN),
+    "newton, corrected": ("h", VERMILION),
     "cg": ("s", BLUE),
     "conformal": ("*", PURPLE),
     "tangent angle": ("P", _BROWN),

@@ -11,10 +11,13 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+import numpy as np
+
 from scripts.studies.error_vs_time.arithmetic import richardson
 from scripts.studies.error_vs_time.scenes import SCENES
 
 COARSE_TO_FINE = ", coarse to fine"
+CORRECTED = ", corrected"
 EXTRAPOLATED = ", extrapolated"
 # The "mesh" of a solver that has none; its loop_edges are harmonics, in the plane a lobe's.
 HARMONICS = "harmonics"
@@ -43,6 +46,8 @@ class Measurement:
     shape_error : float
         Root mean square distance from the exact loop, in L; where only a limit is known,
         the relative error of the loop's radius of gyration.
+    area_error, bending_error : float
+        Relative, of exact scenes; nan of others, and of tools that do not tell them apart.
     """
 
     scene: str
@@ -63,6 +68,13 @@ class Measurement:
     error: float
     shape_error: float
     status: str
+    area_error: float = math.nan
+    bending_error: float = math.nan
+
+    @property
+    def worst_error(self) -> float:
+        """The worst of the errors of area, bending energy and shape; nan if one is."""
+        return float(np.max([self.area_error, self.bending_error, self.shape_error]))
 
 
 @dataclass(frozen=True)
@@ -129,9 +141,9 @@ def points(found: Iterable[Measurement]) -> list[Point]:
 def extrapolated(known: list[Point]) -> list[Point]:
     """Return what two meshes, one twice as fine, give together: (4 fine - coarse) / 3.
 
-    The error of order h^2 cancels; harmonics have none. The cost is both points', or the
-    fine one's where it came from the coarse one. Only where the answer is known exactly,
-    for any tool alike.
+    The error of order h^2 cancels; harmonics, and what is corrected, have none. The cost is
+    both points', or the fine one's where it came from the coarse one. Only where the answer
+    is known exactly, for any tool alike.
     """
     found = []
     for coarse, fine in pairwise(known):
@@ -141,6 +153,7 @@ def extrapolated(known: list[Point]) -> list[Point]:
         if (
             answer is None
             or b.mesh == HARMONICS
+            or b.solver.endswith(CORRECTED)
             or not same
             or b.loop_edges != 2 * a.loop_edges
         ):
@@ -188,6 +201,7 @@ def read_csv(path: Path) -> list[Measurement]:
                 **{
                     field.name: kinds[field.type](row[field.name])
                     for field in fields(Measurement)
+                    if field.name in row  # older tables have fewer
                 }
             )
             for row in csv.DictReader(file)

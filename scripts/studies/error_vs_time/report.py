@@ -13,6 +13,7 @@ from scripts.studies.error_vs_time.arithmetic import (
     pareto,
     seconds_to,
 )
+from scripts.studies.error_vs_time.equal_error import equal_error
 from scripts.studies.error_vs_time.records import (
     EXTRAPOLATED,
     HARMONICS,
@@ -40,6 +41,7 @@ def markdown(found: list[Measurement]) -> str:
         "",
         *_times(known),
         "",
+        *equal_error(by_scene(known)),
         "`conformal`, in space, and `tangent angle`, in the plane, have harmonics in place "
         "of a mesh, of the whole loop and of a lobe; they keep, and use, the start's "
         "symmetry, converge exponentially and have no order.",
@@ -146,9 +148,9 @@ def _all_points(known: list[Point]) -> list[str]:
     lines = [
         "All points that converged; * on the Pareto front of their scene.",
         "",
-        "| scene | solver | mesh | loop | vertices | energy error | shape error | CPU s | "
-        "least-most | wall s | steps | MiB | |",
-        "|---|---|---|" + "---:|" * 9 + "---|",
+        "| scene | solver | mesh | loop | vertices | energy error | shape error | "
+        "area error | bending error | CPU s | least-most | wall s | steps | MiB | |",
+        "|---|---|---|" + "---:|" * 11 + "---|",
     ]
     for name, group in by_scene(known).items():
         front = on_front(group)
@@ -156,7 +158,8 @@ def _all_points(known: list[Point]) -> list[str]:
             m = p.first
             lines.append(
                 f"| {name} | {m.solver} | {m.mesh} | {m.loop_edges} | {m.vertices} | "
-                f"{m.error:.1e} | {m.shape_error:.1e} | {p.cpu:.3g} | "
+                f"{m.error:.1e} | {m.shape_error:.1e} | {m.area_error:.1e} | "
+                f"{m.bending_error:.1e} | {p.cpu:.3g} | "
                 f"{p.least:.3g}-{p.most:.3g} | {p.wall:.3g} | {m.iterations} | "
                 f"{p.memory:.0f} | {'*' if best else ''} |"
             )

@@ -71,6 +71,17 @@ class Scene:
         """The exact energy or threshold, None where neither is known."""
         return self.threshold if self.exact is None else self.exact.energy
 
+    def parts(self, area: float, bending: float) -> dict[str, float]:
+        """Return the relative errors of an area and a bending energy, nan if unknown."""
+        exact = self.exact
+        if exact is None:
+            return {"area_error": math.nan, "bending_error": math.nan}
+        bent = exact.energy - self.load * exact.area
+        return {
+            "area_error": abs(area / exact.area - 1),
+            "bending_error": abs(bending / bent - 1),
+        }
+
     def mesh(self, kind: str, loop_edges: int) -> Disk:
         """Return the rest mesh of a kind with so many loop edges.
 

@@ -67,16 +67,17 @@ def _tried(run: Callable[[], EvolverRun], mesh: Disk) -> EvolverRun:
         return run()
     except ValueError:
         nan, nowhere = math.nan, np.full((mesh.n_b, 3), math.nan)
-        return EvolverRun(nan, nowhere, 0, nan, nan, nan, converged=False)
+        return EvolverRun(nan, nan, nowhere, 0, nan, nan, nan, converged=False)
 
 
 def as_record(
     scene: Scene, mesh: Disk, run: EvolverRun, repeat: int, reading: float
 ) -> dict[str, Any]:
     """Return Evolver's run as a record; `reading`: seconds of starting and reading."""
-    reached = math.nan
+    reached = bending = math.nan
     if run.converged:
         reached = distance(scene, mesh.rest_lengths, run.loop)
+        bending = run.bending
     return {
         "repeat": repeat,
         "set_up": reading,
@@ -89,4 +90,5 @@ def as_record(
         "gyration": gyration(mesh.rest_lengths, run.loop),
         "shape_error": reached,
         "status": "converged" if run.converged else "failed",
+        **scene.parts((run.energy - bending) / scene.load, bending),
     }

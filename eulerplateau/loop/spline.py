@@ -1,0 +1,221 @@
+"""A smooth loop through the vertices of one: the periodic quintic spline.
+
+Its parameter s is the arc length at rest, s_v from vertex v to v + 1. On each edge it is a
+polynomial of degree five, given by the curve, its first and its second derivative at both
+ends (Hermite); these derivatives are such that the third and the fourth are continuous as
+well. Interpolating a smooth curve, its second derivative errs by O(h^4), where a polygon's
+and a cubic spline's err by O(h^2) (Ahlberg, Nilson and Walsh, The Theory of Splines, 1967).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from scipy.sparse import coo_array, csc_array, csr_array
+from scipy.sparse.linalg import SuperLU, splu
+
+from eulerplateau.arrays import FloatArray, IntArray
+
+# What multiplies x, h x', h^2 x'' at the end of an edge of length h, by t = 0 ... 1.
+_END = (
+    Polynomial((0.0, 0.0, 0.0, 10.0, -15.0, 6.0)),
+    Polynomial((0.0, 0.0, 0.0, -4.0, 7.0, -3.0)),
+    Polynomial((0.0, 0.0, 0.0, 0.5, -1.0, 0.5)),
+)
+# At its beginning: t -> 1 - t, where odd derivatives change their sign.
+_BEGINNING = tuple((-1) ** k * p(Polynomial((1.0, -1.0))) for k, p in enumerate(_END))
+# Gauss points of an edge: exact for the squared second derivative, of degree 6.
+_POINTS = 4
+
+
+def _hermite(t: FloatArray, order: int) -> FloatArray:
+    """Return the derivatives (len(t), 6) of all that multiplies, at places t (n,)."""
+    found = [p.deriv(order)(t) if order else p(t) for p in (*_BEGINNING, *_END)]
+    return np.stack(found, axis=-1)
+
+
+_T, _WEIGHTS = np.polynomial.legendre.leggauss(_POINTS)
+_T, _WEIGHTS = 0.5 * (_T + 1), 0.5 * _WEIGHTS
+_VALUE, _FIRST, _SECOND = (_hermite(_T, order) for order in range(3))
+_MIDDLE = _hermite(np.array([0.5]), 0)
+# Jumps of the third and the fourth derivative (2, 2, 2, 3): by order, the edge before a
+# vertex and, negative, the one after it, its beginning and end, the power of its length.
+_ORDERS = np.array([3, 4]).reshape(2, 1, 1, 1, 1)
+_POWERS = np.arange(3)[:, None]
+_JUMPS = np.stack(
+    [[_hermite(np.ones(1), order)[0], -_hermite(np.zeros(1), order)[0]] for order in (3, 4)]
+).reshape(2, 2, 2, 3)
+
+
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return a x b (..., 3); np.cross costs several times as much."""
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+
+
+@dataclass(frozen=True)
+class Splines:
+    """The splines through loops whose edges are s (n,) long at rest: a linear map."""
+
+    lengths: FloatArray
+
+    def through(self, x: FloatArray) -> SplineLoop:
+        """Return the spline through a loop's vertices (n, 3)."""
+        data = np.empty((len(x), 6, 3))
+        derivatives = self._factor.solve(self._knots @ x).reshape(len(x), 2, -1)
+        at_vertices = np.concatenate([x[:, None], derivatives], axis=1)
+        np.multiply(at_vertices, self._powers, out=data[:, :3])
+        np.multiply(at_vertices[self._after], self._powers, out=data[:, 3:])
+        return SplineLoop(self, data)
+
+    def pulled_back(self, by_data: FloatArray) -> FloatArray:
+        """Return a gradient by the vertices (n, 3), given by Hermite's data (n, 6, 3)."""
+        n = len(by_data)
+        at_vertices = self._powers * by_data[:, :3]
+        at_vertices[self._after] += self._powers * by_data[:, 3:]
+        derivatives = self._factor.solve(at_vertices[:, 1:].reshape(2 * n, -1), trans="T")
+        found: FloatArray = at_vertices[:, 0] + self._adjoint @ derivatives
+        return found
+
+    @cached_property
+    def _powers(self) -> FloatArray:
+        """1, h and h^2 (n, 3, 1) of each edge."""
+        h: FloatArray = self.lengths[:, None] ** np.arange(3)
+        return h[:, :, None]
+
+    @cached_property
+    def _after(self) -> IntArray:
+        return np.roll(np.arange(len(self.lengths)), -1)
+
+    @cached_property
+    def _factor(self) -> SuperLU:
+        """The equations of the derivatives at the vertices, factorised."""
+        return splu(self._continuity[0])
+
+    @cached_property
+    def _knots(self) -> csr_array:
+        """What the vertices' positions contribute to these equations."""
+        return self._continuity[1]
+
+    @cached_property
+    def _adjoint(self) -> csr_array:
+        return csr_array(self._knots.T)
+
+    @cached_property
+    def _continuity(self) -> tuple[csc_array, csr_array]:
+        """Equations of the third and the fourth derivative: the edge before, minus after.
+
+        The unknowns are x' and x'' at vertex 0, at vertex 1, ...
+        """
+        n, h, after = len(self.lengths), self.lengths, self._after
+        # By order, edge, its end, power of its length, and vertex: (2, 2, 2, 3, n).
+        lengths = np.stack([h, h[after]])
+        entry = _JUMPS[..., None] * (h / lengths)[:, None, None] ** _ORDERS
+        entry = entry * lengths[:, None, None] ** _POWERS
+        at = np.arange(n)
+        vertex = np.stack([[at, after], [after, after[after]]])[None, :, :, None]
+        row = np.broadcast_to(2 * at + _ORDERS - _ORDERS.min(), entry.shape)
+        column = np.broadcast_to(2 * vertex + _POWERS - 1, entry.shape)
+        inside = (..., slice(1, None), slice(None))
+        known = (..., slice(0, 1), slice(None))
+        columns = np.broadcast_to(vertex, entry[known].shape)
+        matrix = _sparse(entry[inside], row[inside], column[inside], (2 * n, 2 * n))
+        knots = _sparse(-entry[known], row[known], columns, (2 * n, n))
+        return csc_array(matrix), csr_array(knots)
+
+
+@dataclass(frozen=True)
+class SplineLoop:
+    """One of them, r(s), by Hermite's data (n, 6, 3) on its edges.
+
+    Gradients are by these data; Splines.pulled_back makes them such by the vertices.
+    """
+
+    splines: Splines
+    data: FloatArray
+
+    @property
+    def vertices(self) -> FloatArray:
+        """The vertices (n, 3) it passes through."""
+        return self.data[:, 0]
+
+    @property
+    def bending(self) -> float:
+        """The integral of |r''|^2 ds: that of kappa^2 where s is the arc length."""
+        return float(0.5 * np.vdot(self.data, self.bending_gradient))
+
+    @cached_property
+    def bending_gradient(self) -> FloatArray:
+        """Its gradient."""
+        weights = 2 * _WEIGHTS / self.splines.lengths[:, None] ** 3
+        return _adjoint(_SECOND, weights[:, :, None] * _along(_SECOND, self.data))
+
+    @cached_property
+    def speeds(self) -> FloatArray:
+        """|r'| at each edge's Gauss points (n, 4): 1 where s is the arc length."""
+        speeds: FloatArray = np.sqrt(np.square(self._first).sum(axis=2))
+        return speeds / self.splines.lengths[:, None]
+
+    @cached_property
+    def excess(self) -> FloatArray:
+        """By how much each edge's arc (n,) is longer than at rest."""
+        excess: FloatArray = self.splines.lengths * ((self.speeds - 1) @ _WEIGHTS)
+        return excess
+
+    def tension_gradient(self, tensions: FloatArray) -> FloatArray:
+        """Return the gradient of sum_v lambda_v excess_v for tensions lambda (n,)."""
+        pull = (tensions / self.splines.lengths)[:, None] * _WEIGHTS / self.speeds
+        return _adjoint(_FIRST, pull[:, :, None] * self._first)
+
+    @cached_property
+    def spanned(self) -> FloatArray:
+        """Half the integral of r x r' ds (3,): area times normal of a flat loop."""
+        turned = cross(_along(_VALUE, self.data), self._first)
+        spanned: FloatArray = 0.5 * (_WEIGHTS @ turned.sum(axis=0))
+        return spanned
+
+    def spanned_gradient(self, normal: FloatArray) -> FloatArray:
+        """Return the gradient of its part along a normal (3,).
+
+        d(r x r') . n = dr . (r' x n) + dr' . (n x r).
+        """
+        x, y, z = normal.tolist()
+        turn = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        half = 0.5 * _WEIGHTS[:, None]
+        coupled = np.matmul(_VALUE.T, half * _FIRST) - np.matmul(_FIRST.T, half * _VALUE)
+        gradient: FloatArray = np.matmul(_along(coupled, self.data), turn)
+        return gradient
+
+    @property
+    def middles(self) -> FloatArray:
+        """The middles of the edges (n, 3)."""
+        return _along(_MIDDLE, self.data)[:, 0]
+
+    def middles_gradient(self, forces: FloatArray) -> FloatArray:
+        """Return the gradient of what forces (n, 3) do on the middles."""
+        return _adjoint(_MIDDLE, forces[:, None])
+
+    @cached_property
+    def _first(self) -> FloatArray:
+        return _along(_FIRST, self.data)
+
+
+def _along(basis: FloatArray, data: FloatArray) -> FloatArray:
+    """Return sums (n, m, 3) of data (n, 6, 3) with the rows of a basis (m, 6)."""
+    found: FloatArray = np.matmul(basis, data)
+    return found
+
+
+def _adjoint(basis: FloatArray, forces: FloatArray) -> FloatArray:
+    """Return the gradient by data (n, 6, 3) of what forces (n, m, 3) do on such sums."""
+    return _along(basis.T, forces)
+
+
+def _sparse(
+    entry: FloatArray, row: IntArray, column: IntArray, shape: tuple[int, int]
+) -> coo_array:
+    return coo_array((entry.ravel(), (row.ravel(), column.ravel())), shape=shape)

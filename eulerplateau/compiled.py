@@ -16,4 +16,4 @@ class _Told(Listener):
         pass
 
 
-register("numba:compile", _Told())
+register("numba:compile", _Told())  # type: ignore[no-untyped-call]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 from eulerplateau.film.parts import Part, eliminate
 
 

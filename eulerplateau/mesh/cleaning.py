@@ -15,6 +15,12 @@ from eulerplateau.mesh.graphs import components
 from eulerplateau.mesh.triangles import directed_edges, joints
 
 
+def pieces(triangles: IntArray) -> int:
+    """Return into how many pieces triangles fall that edges of two of them join."""
+    one, other = joints(triangles)
+    return int(components(one // 3, other // 3, len(triangles)).max()) + 1
+
+
 def oriented(triangles: IntArray) -> tuple[IntArray, BoolArray]:
     """Return `triangles` (n_t, 3) alike in direction, and which (n_t,) were turned over.
 

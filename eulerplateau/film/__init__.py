@@ -11,8 +11,7 @@
                   to a discrete minimal surface (minimal_surface.py); area_term.py: its
                   energy
     with_loop.py  film and loop in one sparse matrix, factorised by indefinite.py
-    repair.py     thin triangles replaced (flips.py); harmonic.py: how it follows its loop,
-                  carrying.py: both
+    repair.py     thin triangles replaced (flips.py); harmonic.py: how it follows its loop
     plane.py      a soap film kept in its plane; plane_mesh.py: how its mesh follows
 
 Of a loop each answers with its force, its energy and its shape; nobody above asks which

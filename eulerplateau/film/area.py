@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.area_term import Area
-from eulerplateau.film.carrying import carry_along
 from eulerplateau.film.folds import is_folded, laid_anew
 from eulerplateau.film.free_film import FreeFilm
 from eulerplateau.film.free_moves import FreeInterior
@@ -28,7 +27,7 @@ from eulerplateau.film.interior import LocalFilm
 from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.minimal_surface import find_minimal_surface, is_flat
 from eulerplateau.film.normal_moves import normal_heights
-from eulerplateau.film.repair import mend_triangles
+from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 from eulerplateau.film.with_loop import LoopStiffness
 from eulerplateau.loop import Loop, LoopEnergy, free_motions, inextensible, sliding

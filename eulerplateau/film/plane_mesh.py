@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film.carrying import carry_along
 from eulerplateau.film.follow_kernels import spread_inside
-from eulerplateau.film.repair import mend_triangles
+from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.loop import strands_meet
 from eulerplateau.mesh import cotangents, smallest_angle

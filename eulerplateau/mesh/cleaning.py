@@ -112,7 +112,7 @@ def _places(points: FloatArray, tolerance: float) -> IntArray:
     exponent = -int(np.frexp(np.abs(points).max())[1])
     tree = cKDTree(np.ldexp(points, exponent))
     near = tree.query_pairs(float(np.ldexp(tolerance, exponent)), output_type="ndarray")
-    return components(*near.T, len(points))
+    return components(near[:, 0], near[:, 1], len(points))
 
 
 def _fans(corners: IntArray) -> IntArray:

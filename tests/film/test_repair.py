@@ -7,7 +7,6 @@ import pytest
 from scipy.spatial import Delaunay
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.carrying import carry_along
 from eulerplateau.film.flip_kernels import flip_to_delaunay
 from eulerplateau.film.flips import (
     delaunay_flips,
@@ -15,7 +14,7 @@ from eulerplateau.film.flips import (
 from eulerplateau.film.models import (
     area,
 )
-from eulerplateau.film.repair import mend_triangles
+from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import (

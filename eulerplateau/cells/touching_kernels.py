@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 
 @njit(cache=True)

@@ -3,7 +3,8 @@
     protocol.py   what a film has to do; models.py: the films by name, to which one adds
     load.py       what a film is loaded by, and how that is called
     quadratic.py  springs and Dirichlet's energy: fixed weights, eliminated exactly and once
-                  (condensation.py on elimination.py and dissection.py)
+                  (condensation.py; small ones at once, parts.py, others by elimination.py
+                  and dissection.py)
     area.py       the true soap film, on the geometry of its triangles (tiling.py)
     interior.py   that film as a function of its loop near one shape, its vertices moving
                   along normals (heights_film.py, normal_moves.py) or freely (free_film.py),

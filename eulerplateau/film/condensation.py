@@ -157,8 +157,19 @@ def factorise(elimination: Elimination, entries: FloatArray) -> Condensation:
     Raises LinAlgError unless that is positive definite. The caller sees to it that BLAS has
     one thread.
     """
-    stiffness, parts = elimination.condense(entries)
-    return Condensation(stiffness, elimination.order, parts)
+    from eulerplateau.film.elimination import mirror
+
+    parts: list[Part] = []
+    remainders: dict[int, FloatArray] = {}
+    *inner, kept = elimination.fronts
+    for number, front in enumerate(inner):
+        own = front.stop - front.start
+        block = front.assemble(entries, remainders)
+        half, remainders[number], factor = eliminate(block, own)
+        parts.append(Part(front.start, front.stop, front.around, half, factor))
+    stiffness = kept.assemble(entries, remainders)
+    mirror(stiffness)
+    return Condensation(stiffness, elimination.order, tuple(parts))
 
 
 def condense(
@@ -187,8 +198,8 @@ def _at_once(
     n = len(order)
     place = np.empty(n, dtype=np.int64)
     place[order] = np.arange(n)
-    block = np.bincount(place[row] * n + place[column], values, minlength=n * n)
-    block = block.reshape(n, n)
+    flat = np.bincount(place[row] * n + place[column], values, minlength=n * n)
+    block: FloatArray = flat.astype(np.float64, copy=False).reshape(n, n)
     if not own:
         return Condensation(block, order, ())
     half, rest, factor = eliminate(block, own)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from eulerplateau.arrays import IntArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 # Pieces of this many vertices are dense matrices that BLAS multiplies well.
 LARGEST = 128

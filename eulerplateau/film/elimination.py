@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.compiled import njit
-from eulerplateau.film.parts import Part, eliminate
+from eulerplateau.compiling import njit
 
 
 @dataclass(frozen=True)
@@ -63,25 +62,6 @@ class Elimination:
     order: IntArray
     fronts: tuple[_Front, ...]
 
-    def condense(self, values: FloatArray) -> tuple[FloatArray, tuple[Part, ...]]:
-        """Return what is left of a matrix with these entries (m,), and the parts.
-
-        Raises LinAlgError unless what is eliminated is positive definite. The caller sees
-        to it that BLAS has one thread.
-        """
-        parts: list[Part] = []
-        remainders: dict[int, FloatArray] = {}
-        *inner, kept = self.fronts
-        for number, front in enumerate(inner):
-            own = front.stop - front.start
-            block = front.assemble(values, remainders)
-            half, remainder, factor = eliminate(block, own)
-            parts.append(Part(front.start, front.stop, front.around, half, factor))
-            remainders[number] = remainder
-        rest = kept.assemble(values, remainders)
-        mirror(rest)
-        return rest, tuple(parts)
-
 
 def plan(
     row: IntArray, column: IntArray, pieces: list[IntArray], kept: IntArray
@@ -92,7 +72,7 @@ def plan(
     summed; of two that mirror each other across parts the later row's may be missing.
     """
     order = np.concatenate([*pieces, kept])
-    place = np.empty(len(order), dtype=np.int32)
+    place: IntArray = np.empty(len(order), dtype=np.int32)
     place[order] = np.arange(len(order))
     row, column = place[row], place[column]
     stops = np.cumsum([*(len(piece) for piece in pieces), len(kept)], dtype=np.int64)

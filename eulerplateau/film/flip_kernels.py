@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 # Two triangles are turned into the other two of their quadrilateral only where it is nearly
 # flat: cosine of the largest angle between their normals, before and after.

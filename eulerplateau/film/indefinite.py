@@ -15,7 +15,7 @@ from scipy.linalg.blas import dgemm
 from scipy.linalg.lapack import dsytrf, dsytrs
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 from eulerplateau.film.elimination import Elimination
 from eulerplateau.film.solve_kernels import solve_symmetric_fronts
 

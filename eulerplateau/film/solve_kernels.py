@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})

@@ -23,7 +23,7 @@ import math
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 # theta / sin(theta) is a power series in (1 - cos theta) / 2, with the ratios k / (k + 1/2)
 # of its coefficients: up to 60 degrees so many are right to rounding.

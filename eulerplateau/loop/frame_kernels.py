@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 _STEPS = 1000
 # Radians: Newton's method is not believed to go farther in a step.

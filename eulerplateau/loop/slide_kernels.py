@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 # Threshold on the part of the sliding motion that is not a rotation, of 1. A circle's
 # sliding is a rotation. Of loops nearer to a circle, what is left of it cannot be told from

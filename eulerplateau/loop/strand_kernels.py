@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import BoolArray, FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 # Newton's steps from a guess, the last one's length in parts of the loop, that of one which
 # is not asked whether it goes downhill, and by how much the second derivative is positive.

@@ -56,9 +56,9 @@ class LengthMetric:
     def _factor(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """LAPACK's factor of the matrix without w w^T, then w, and w solved for."""
         u, ease = self.directions, 1 / self.means
-        squares = (u * u).sum(axis=1)
+        squares = np.einsum("vd,vd->v", u, u)
         diagonal = squares * (ease + np.roll(ease, -1))
-        beside = -(u[1:] * u[:-1]).sum(axis=1) * ease[1:]
+        beside = -np.einsum("vd,vd->v", u[1:], u[:-1]) * ease[1:]
         corner = -float(u[-1] @ u[0]) * ease[0]
         border, root = np.zeros(len(u)), np.sqrt(abs(corner))
         even = (squares[0] / squares[-1]) ** 0.25 if squares[[0, -1]].all() else 1.0

@@ -18,7 +18,7 @@ import math
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 # Tangent of an angle that is small, and how many of them are less than pi.
 _SMALL, _FEW = 0.1, 24

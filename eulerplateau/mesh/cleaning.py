@@ -15,6 +15,12 @@ from eulerplateau.mesh.graphs import components
 from eulerplateau.mesh.triangles import directed_edges, joints
 
 
+def pieces(triangles: IntArray) -> int:
+    """Return into how many pieces triangles fall that edges of two of them join."""
+    one, other = joints(triangles)
+    return int(components(one // 3, other // 3, len(triangles)).max()) + 1
+
+
 def oriented(triangles: IntArray) -> tuple[IntArray, BoolArray]:
     """Return `triangles` (n_t, 3) alike in direction, and which (n_t,) were turned over.
 
@@ -106,7 +112,7 @@ def _places(points: FloatArray, tolerance: float) -> IntArray:
     exponent = -int(np.frexp(np.abs(points).max())[1])
     tree = cKDTree(np.ldexp(points, exponent))
     near = tree.query_pairs(float(np.ldexp(tolerance, exponent)), output_type="ndarray")
-    return components(*near.T, len(points))
+    return components(near[:, 0], near[:, 1], len(points))
 
 
 def _fans(corners: IntArray) -> IntArray:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 from eulerplateau.mesh.crossings import self_intersections
 from eulerplateau.mesh.graphs import components
 from eulerplateau.mesh.shape import Shape

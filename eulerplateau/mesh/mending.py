@@ -6,9 +6,8 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
-from eulerplateau.mesh.cleaning import merged, oriented
+from eulerplateau.mesh.cleaning import merged, oriented, pieces
 from eulerplateau.mesh.disk import Disk, trace_disk
-from eulerplateau.mesh.triangles import pieces
 
 # Vertices this near to each other, in units of the mesh's size, are one: what is left of
 # equal places where a file holds six or seven digits.

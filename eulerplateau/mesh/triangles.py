@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.mesh.graphs import components
 
 
 def directed_edges(triangles: IntArray) -> IntArray:
@@ -23,12 +22,6 @@ def joints(triangles: IntArray) -> tuple[IntArray, IntArray]:
     _, begin, count = np.unique(ends[order], axis=0, return_index=True, return_counts=True)
     pair = begin[count == 2]
     return order[pair], order[pair + 1]
-
-
-def pieces(triangles: IntArray) -> int:
-    """Return into how many pieces triangles fall that edges of two of them join."""
-    one, other = joints(triangles)
-    return int(components(one // 3, other // 3, len(triangles)).max()) + 1
 
 
 def area_vectors(triangles: IntArray, x: FloatArray) -> FloatArray:

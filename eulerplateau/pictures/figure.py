@@ -197,10 +197,11 @@ def _write_png(figure: Figure, file: io.BytesIO) -> None:
 
     figure.set_dpi(_DPI)
     canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    pixels = np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[:, :, :3])
+    canvas.draw()  # type: ignore[no-untyped-call]
+    seen = np.asarray(canvas.buffer_rgba())[:, :, :3]  # type: ignore[no-untyped-call]
+    image = Image.fromarray(np.ascontiguousarray(seen))
     # Less than a seventh longer than at the default, in half of the time.
-    Image.fromarray(pixels).save(file, "png", dpi=(_DPI, _DPI), compress_level=3)
+    image.save(file, "png", dpi=(_DPI, _DPI), compress_level=3)
 
 
 def lay_out(figure: Figure) -> None:

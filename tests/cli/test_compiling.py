@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from eulerplateau.compiled import njit
-from eulerplateau.compiling import telling_of_compiling
+from eulerplateau.compiling import njit, telling_of_compiling
 
 
 def test_first_call_alone_says_that_it_compiles() -> None:

@@ -14,10 +14,7 @@ from eulerplateau.film.flips import (
 from eulerplateau.film.models import (
     area,
 )
-from eulerplateau.film.repair import (
-    carry_along,
-    mend_triangles,
-)
+from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import (

@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 
 @njit(cache=True)

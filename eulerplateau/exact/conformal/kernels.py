@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 # Of the angle between tangents at neighbouring points, and of their lengths.
 _LEAST_COSINE, _LARGEST_RATIO = 0.866, 1.5

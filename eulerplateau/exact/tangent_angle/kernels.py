@@ -24,7 +24,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 # Points on half a lobe beyond one for each harmonic: what quadrature misses is e^{i phi}'s
 # coefficients from this far above the harmonics, less than what truncation does.

@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.compiled import njit
+from eulerplateau.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")

@@ -34,10 +34,10 @@ def carried_out(command: str, pictures: bool) -> dict[str, float]:
     kept = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
     with TemporaryDirectory() as folder:
         told = Path(folder) / "parts.json"
-        words = [command, RUN, "--quiet", "--out", Path(folder) / "run"]
+        words = [command, str(RUN), "--quiet", "--out", str(Path(folder) / "run")]
         if not pictures:
             words.append("--no-pictures")
-        module = [sys.executable, "-P", "-m", "scripts.studies.overheads.parts", told]
+        module = [sys.executable, "-P", "-m", "scripts.studies.overheads.parts", str(told)]
         subprocess.run([*module, *words], check=True, env=kept)
         found: dict[str, float] = json.loads(told.read_text())
     return {**found, "beside": found["all"] - found["solved"]}

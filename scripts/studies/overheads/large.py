@@ -42,4 +42,5 @@ def steps(vertices: int) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(steps(int([*sys.argv, VERTICES][1]))))
+    wanted = int(sys.argv[1]) if sys.argv[1:] else VERTICES
+    sys.stdout.write(json.dumps(steps(wanted)))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).parents[1]
 
 # Of what is imported and collected nothing is garbage, yet all of it would be looked at
-# again and again; and to look as often as Python does by itself takes a fortieth of the time.
+# again and again; and to look as often as Python does takes a fortieth of the time.
 gc.disable()
 gc.set_threshold(100_000)
 

@@ -96,9 +96,6 @@ def _one_blas_thread() -> Iterator[None]:
 def coarse_pictures() -> Iterator[None]:
     """Figures have fewer pixels from now on, and a text is parsed once for all of them.
 
-    Letters in PDFs are drawn: to embed those of their font that occur takes a third of the
-    time. tests/cli/test_plot.py makes a PDF as users do.
-
     By itself matplotlib remembers 50 texts, of one figure's PNG or of PDFs and SVGs, and at
     one resolution: here it is that of PDF and SVG for all.
     """
@@ -118,7 +115,6 @@ def coarse_pictures() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch, rc_context({"figure.dpi": dpi}):
         patch.setattr(figure, "_DPI", dpi)
-        patch.setattr(figure, "_FONTS", 3)
         patch.setattr(MathTextParser, "_parse_cached", parse_once)
         yield
 

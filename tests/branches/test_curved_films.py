@@ -60,7 +60,6 @@ def test_disk_is_lost_across_its_plane_where_the_theory_says(n, q, g):
     assert found == pytest.approx(expected, rel=1e-10)
 
 
-@pytest.mark.slow
 def test_natural_curvature_leaves_planar_films_and_shifts_their_energy():
     flat, known = rod_film(Start.LOBES, 1600.0, 0.75, 0.0, 0.6), planar_film(2, 1600.0)
     natural = 2 * pi * 0.6
@@ -258,6 +257,7 @@ def agrees(values, known, powers=(0, 2, 4)):
 EDGES = (60, 84, 120, 168)
 
 
+@pytest.mark.slow
 def test_saddle_of_a_curved_rod_is_the_limit_of_meshes():
     point = saddle()
     energy, area, *_ = zip(*on_meshes(24 * pi**3, 0.75, 0.0, 1.6, EDGES), strict=True)
@@ -266,6 +266,7 @@ def test_saddle_of_a_curved_rod_is_the_limit_of_meshes():
     agrees(area, film_of(point).area)
 
 
+@pytest.mark.slow
 def test_film_of_a_rod_that_was_turned_once_is_the_limit_of_meshes():
     """Its moment is another at every vertex, and no weld is seen there."""
     point = turned_once()

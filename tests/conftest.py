@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).parents[1]
 
 # Of what is imported and collected nothing is garbage, yet all of it would be looked at
-# again and again; to look as often as Python does takes a fortieth of the time.
+# again and again; to look as often as Python does takes a hundredth of the time.
 gc.disable()
-gc.set_threshold(100_000)
+gc.set_threshold(20_000)
 
 # Files that ask one exploration, or the syntax trees of all files, a few seconds' work: one
 # process has them all.
@@ -96,9 +96,6 @@ def _one_blas_thread() -> Iterator[None]:
 def coarse_pictures() -> Iterator[None]:
     """Figures have fewer pixels from now on, and a text is parsed once for all of them.
 
-    Letters in PDFs are drawn: to embed those of their font that occur takes a third of the
-    time. tests/cli/test_plot.py makes a PDF as users do.
-
     By itself matplotlib remembers 50 texts, of one figure's PNG or of PDFs and SVGs, and at
     one resolution: here it is that of PDF and SVG for all.
     """
@@ -118,7 +115,6 @@ def coarse_pictures() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch, rc_context({"figure.dpi": dpi}):
         patch.setattr(figure, "_DPI", dpi)
-        patch.setattr(figure, "_FONTS", 3)
         patch.setattr(MathTextParser, "_parse_cached", parse_once)
         yield
 

@@ -41,8 +41,6 @@ _UNDATED: dict[str, dict[str, None]] = {
     "svg": {"Date": None},
 }
 _DPI = 300
-# Type 42: text in a PDF stays text.
-_FONTS = 42
 # Inches: one column of a journal, two, and what a panel takes of the height.
 COLUMN, PAGE, _PANEL, _ABOVE = 8.6 / 2.54, 17.8 / 2.54, 1.35, 1.2
 # Inches above and below each part of a figure.
@@ -175,9 +173,9 @@ def save(figure: Figure, path: Path) -> None:
 
     form = path.suffix[1:].lower()
     content = io.BytesIO()
-    # Simplified, a curve loses its corners.
+    # Type 42: text in a PDF stays text. Simplified, a curve loses its corners.
     settings: Any = {
-        "pdf.fonttype": _FONTS,
+        "pdf.fonttype": 42,
         "svg.hashsalt": "eulerplateau",
         "path.simplify": False,
     }

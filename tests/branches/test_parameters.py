@@ -127,6 +127,7 @@ def test_a_branch_in_link_goes_through_zero_and_is_even() -> None:
     assert np.interp(0.1, links, writhes) == pytest.approx(-writhes[0], rel=0.02)
 
 
+@pytest.mark.slow
 def test_forces_balance_at_every_point_though_its_film_leaves_the_plane_by_and_by() -> None:
     """No branch point is where a turned loop's flat film begins to curve."""
     points, triangles = shapes.disk_points(4)

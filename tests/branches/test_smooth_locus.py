@@ -129,6 +129,7 @@ def test_the_disk_s_bifurcation_changes_its_nature_where_films_of_given_writhe_s
         assert point.special or point.coefficient * above > 0
 
 
+@pytest.mark.slow
 def test_the_disk_s_nature_without_film_is_that_of_rings_of_dna() -> None:
     """11/8 at no load, where a film without a mesh is free to slide; linear next to it."""
     found = []

@@ -126,6 +126,7 @@ def explored(family: Family, x: FloatArray) -> list[DiagramPoint]:
     return list(explore_from(start, control, Limits(special_points=1)))
 
 
+@pytest.mark.slow
 def test_a_diagram_in_other_unknowns_is_the_same() -> None:
     points, triangles = shapes.disk_points(3)
     problem = Problem(shapes.mesh_of(points * [1.6, 1.0], triangles), "springs")

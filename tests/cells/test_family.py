@@ -34,12 +34,13 @@ def fold_of(m: int, parameter: str, window: tuple[float, float], fixed: float) -
 
 
 # Folds (sigma_hat, ks_hat) of the smooth boundary-value problem, solved independently.
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("parameter", "window", "fixed", "exact"),
     [
         ("load", (50.0, 60.0), 123.101, 54.536),
-        pytest.param("load", (62.0, 75.0), 99.685, 68.283, marks=pytest.mark.slow),
-        pytest.param("stiffness", (110.0, 130.0), 54.536, 123.101, marks=pytest.mark.slow),
+        ("load", (62.0, 75.0), 99.685, 68.283),
+        ("stiffness", (110.0, 130.0), 54.536, 123.101),
     ],
 )
 def test_the_fold_converges_to_that_of_a_smooth_edge_with_the_square_of_the_edges(

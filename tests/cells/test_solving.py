@@ -93,6 +93,7 @@ def test_derivatives_of_the_energy_are_the_area_and_the_springs_squares(
     assert order(sizes, by_stiffness) == pytest.approx(2, abs=0.1)
 
 
+@pytest.mark.slow
 def test_springs_end_up_normal_to_the_edge_to_the_order_of_the_discretisation() -> None:
     counts = [12, 24, 48]
     slipped = []

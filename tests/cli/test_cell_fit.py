@@ -210,7 +210,9 @@ def test_a_shell_sees_the_exit_code_and_no_traceback(
     assert "Traceback" not in result.stderr
 
 
-@pytest.mark.parametrize("text", [ROWS, TWO], ids=["errors", "no errors"])
+@pytest.mark.parametrize(
+    "text", [ROWS, pytest.param(TWO, marks=pytest.mark.slow)], ids=["errors", "no errors"]
+)
 def test_figure_shows_something_and_keeps_clear_of_its_edges(
     data: Path, tmp_path: Path, text: str
 ) -> None:

@@ -44,6 +44,7 @@ def test_disk_of_any_load_and_link_counts_all_modes_that_yield(
     assert str(said["twist_moment"]) != "-0.0"
 
 
+@pytest.mark.slow
 def test_ring_curved_by_nature_counts_all_modes_that_yield() -> None:
     """Of natural curvature q, without a film, those of q (q + g) > q + g n^2, g = C/B."""
     q, ratio = 5.0, 0.1
@@ -53,6 +54,7 @@ def test_ring_curved_by_nature_counts_all_modes_that_yield() -> None:
     assert said["n_unstable"] == 2 * len(yields)
 
 
+@pytest.mark.slow
 def test_next_to_a_film_of_no_link_there_is_one_of_a_little() -> None:
     """dE/dLk = 2 pi M."""
     rod = 1700, "--start", "twisted", "--twist-ratio", 0.1, "--link"
@@ -73,7 +75,12 @@ def test_next_to_a_film_of_no_link_there_is_one_of_a_little() -> None:
             "unresolved",
             "inf waves",
         ),
-        ((1e9, "--start", "eight", "--diameter", 0.02), "stalled", "the last on the way"),
+        pytest.param(
+            (1e9, "--start", "eight", "--diameter", 0.02),
+            "stalled",
+            "the last on the way",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_film_that_is_refused_is_json_with_a_reason(

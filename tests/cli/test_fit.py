@@ -103,6 +103,7 @@ def test_a_film_is_told_to_be_no_racket_s_head(nylon: Path) -> None:
     assert done.stdout.splitlines()[-1].endswith("leave out --racket.")
 
 
+@pytest.mark.slow
 def test_what_is_no_film_is_told_to_be_none(tmp_path: Path) -> None:
     path, angles = tmp_path / "ellipse.csv", np.arange(50) * 2 * pi / 50
     np.savetxt(path, np.stack([20 * np.cos(angles), 10 * np.sin(angles)], 1))

@@ -40,6 +40,7 @@ def completed(*words: str) -> list[str]:
     return [item.value for item in shell.get_completions(list(words[:-1]), words[-1])]
 
 
+@pytest.mark.slow
 def test_every_command_is_asked_about_by_two_letters() -> None:
     # In a fresh process: a command that was called without its group keeps its own options.
     asked = """

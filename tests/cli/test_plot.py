@@ -44,11 +44,8 @@ def test_command_draws_in_the_format_its_file_asks_for(tmp_path: Path, sweep: Pa
     assert out.read_bytes().startswith(b"%PDF")
 
 
-@pytest.mark.parametrize(
-    "backend",
-    ["module://matplotlib_inline.backend_inline",
-     pytest.param("TkAgg", marks=pytest.mark.slow)],
-)  # fmt: skip
+@pytest.mark.slow
+@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "TkAgg"])
 def test_a_notebook_s_backend_is_not_asked_for(
     tmp_path: Path, sweep: Path, backend: str
 ) -> None:

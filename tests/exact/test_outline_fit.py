@@ -35,8 +35,8 @@ def outline(
     ("curves", "shape"),
     [
         (Lobes(2), [0.02]),
-        (Lobes(2), [0.5]),
-        (Lobes(2), [1.2]),
+        pytest.param(Lobes(2), [0.5], marks=pytest.mark.slow),
+        pytest.param(Lobes(2), [1.2], marks=pytest.mark.slow),
         (Lobes(2), [2.0]),
         (Lobes(5), [0.8]),
         (Racket(), []),

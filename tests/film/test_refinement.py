@@ -31,7 +31,7 @@ def saddle(x: FloatArray) -> FloatArray:
     return np.column_stack([x[:, 0], x[:, 1], 8 * x[:, 0] * x[:, 1]])
 
 
-@pytest.mark.parametrize("bent", [False, True])
+@pytest.mark.parametrize("bent", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_refined_film_is_a_disk_on_the_same_loop(bent: bool) -> None:
     x = saddle(MESH.x) if bent else MESH.x
     tiling, after = finer(MESH, x)

@@ -11,6 +11,7 @@ from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import area_vectors
 from tests.helpers import disk_files
 from tests.helpers.disk_files import HAND_MADE, POINTS, TRIANGLES
+from tests.helpers.marks import quick_with
 
 KNOWN = Disk.from_triangles(POINTS, TRIANGLES)
 
@@ -105,7 +106,9 @@ def _here(known: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
     ("version", "binary"),
     [(2.2, False), (2.2, True), (4.0, False), (4.1, False), (4.1, True)],
 )
-@pytest.mark.parametrize("variant", ["", "parametric", "partitioned", "groups"])
+@pytest.mark.parametrize(
+    "variant", quick_with(["", "groups"], ["", "parametric", "partitioned", "groups"])
+)
 @pytest.mark.usefixtures("_here")
 def test_gmshs_files_of_any_version_are_the_same_disk(
     tmp_path, known, variant, version, binary

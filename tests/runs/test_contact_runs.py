@@ -238,6 +238,7 @@ def test_a_catalogue_has_the_columns_and_the_shapes_their_contacts(
     assert draw_catalogue(listed.folder)
 
 
+@pytest.mark.slow
 def test_branches_have_the_columns_and_say_where_strands_touch(
     mesh: Path, tmp_path: Path
 ) -> None:

@@ -209,6 +209,7 @@ def test_an_interrupted_branch_in_link_goes_on_to_the_bit(
         assert (explored / name).read_bytes() == (tmp_path / "run" / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_branches_start_from_a_stored_shape_at_its_own_link(
     mesh: Path, swept: Path, tmp_path: Path
 ) -> None:

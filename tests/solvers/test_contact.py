@@ -43,7 +43,13 @@ def eight(film: str, diameter: float, rings: int = 8) -> Equilibrium:
 
 
 @pytest.mark.parametrize(
-    ("film", "d"), [("springs", 0.02), ("dirichlet", 0.02), ("area", 0.02), ("area", 0.03)]
+    ("film", "d"),
+    [
+        ("springs", 0.02),
+        ("dirichlet", 0.02),
+        pytest.param("area", 0.02, marks=pytest.mark.slow),
+        ("area", 0.03),
+    ],
 )
 def test_strands_that_touch_push_with_the_energy_s_slope_in_the_diameter(
     film: str, d: float

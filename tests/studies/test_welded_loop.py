@@ -33,7 +33,6 @@ from scripts.studies.welded_loop.starts import FINER, End, cases, run
 EDGES = (48, 64, 96)
 
 
-@pytest.mark.slow
 def test_twist_stiffens_flat_lobes_as_much_on_meshes():
     """C/B that would keep them flat: E_0''(0) without a mesh, w K^-1 w on meshes."""
     first = next(films_by_writhe(1800.0))
@@ -125,6 +124,7 @@ def test_first_films_hardly_writhe():
     assert 0 < writhes[1] < writhes[2] < 0.02
 
 
+@pytest.mark.slow
 def test_start_that_pinches_on_a_coarse_mesh_beside_a_fold_ends_wide_on_finer_ones():
     """On 72 edges the film with a wide waist folds at a smaller link than it should."""
     case = cases()[40]

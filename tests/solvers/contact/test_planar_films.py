@@ -167,7 +167,7 @@ def test_three_lobes_along_lines_converge_and_share_them_at_no_cost() -> None:
     assert lowest[1][2] > 0
 
 
-@pytest.mark.parametrize("film", [POINT[3], LINE[0]])
+@pytest.mark.parametrize("film", [POINT[3], pytest.param(LINE[0], marks=pytest.mark.slow)])
 def test_errors_of_energy_and_force_are_of_second_order(
     film: tuple[int, float, float],
 ) -> None:
@@ -182,7 +182,12 @@ def test_errors_of_energy_and_force_are_of_second_order(
 
 
 @pytest.mark.parametrize(
-    "film", [POINT[1], POINT[5], pytest.param(LINE[0], marks=pytest.mark.slow)]
+    "film",
+    [
+        POINT[1],
+        pytest.param(POINT[5], marks=pytest.mark.slow),
+        pytest.param(LINE[0], marks=pytest.mark.slow),
+    ],
 )
 def test_slopes_of_the_energy_are_force_and_area(film: tuple[int, float, float]) -> None:
     _, load, diameter = film

@@ -50,6 +50,7 @@ def test_a_film_holds_a_knot_whose_strands_overlap_nowhere() -> None:
     assert found.is_minimum
     assert found.contacts is not None
     assert found.contacts.forces.min() > 0.0
+    assert found.contacts.complementarity < 1e-12 * found.energy
     lengths = round_disk(EDGES).rest_lengths
     least = least_distance(found.shape.x_loop, lengths, 0.5 * np.pi * DIAMETER)
     assert least > (1 - 1e-5) * DIAMETER

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from eulerplateau.arrays import BoolArray, FloatArray
 from eulerplateau.loop.gaps import Gaps
 
@@ -58,6 +60,11 @@ class Contacts:
     def force(self) -> float:
         """The sum of the forces: dE/dd."""
         return float(self.forces.sum())
+
+    @property
+    def complementarity(self) -> float:
+        """The largest force times gap, in alpha / L: 0 but for rounding at rest."""
+        return float(np.abs(self.forces * self.gaps).max(initial=0.0))
 
     @property
     def doubtful(self) -> BoolArray:

@@ -39,10 +39,9 @@ _TIGHTENING = 0.1
 _ROOM = 0.3
 # Energy, alpha / L, that is nothing to gain between base points: a circle has 4 pi^2.
 _NOTHING = 1e-11
-# Base points in a row at their tolerance with nothing gained, after which it is over; and
-# where the residual is larger than it should be: forces of a fine loop are rounded there.
-_IDLE = 10
-_IDLE_AT_ROUNDING = 40
+# Base points in a row at their tolerance with nothing gained, after which it is over; more
+# where forces of a fine loop, being rounded, are larger than they should be.
+_IDLE, _IDLE_AT_ROUNDING = 10, 40
 # Forces inside a film at rest over the largest of its forces on the loop.
 _FILM_BALANCE = 1e-3
 # Relative length error up to which a loop is near enough to be held as it moves.
@@ -122,14 +121,12 @@ def descend(
             forces, tension, scale = _forces(problem, iterate, load, penalty)
         except LinAlgError:  # no film, or no loop
             return _record(problem, iterate, load, Status.STALLED)
-        if scale == 0.0 or problem.pinched(shape):
-            # A point; a soap film without width.
+        if scale == 0.0 or problem.pinched(shape):  # a point; a soap film without width
             return _record(problem, iterate, load, Status.STALLED)
         residual = float(np.abs(forces).max()) / scale
         if not np.isfinite(residual):
             return _record(problem, iterate, load, Status.NOT_FINITE)
-        patience = _IDLE if residual <= method.residual else _IDLE_AT_ROUNDING
-        if iterate.idle >= patience:
+        if iterate.idle >= (_IDLE if residual <= method.residual else _IDLE_AT_ROUNDING):
             found = _given_up(problem, iterate, load, Status.STALLED)
             if found.converged:
                 return found

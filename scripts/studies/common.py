@@ -82,8 +82,9 @@ def _with_palette(path: Path, colours: int, method: Quantize) -> None:
     from PIL import Image
 
     with Image.open(path) as image:
-        dots = image.info["dpi"]
+        # A contact sheet is as large as it is, and no number of inches.
+        dots = {"dpi": image.info["dpi"]} if "dpi" in image.info else {}
         small = image.convert("RGB").quantize(
             colours, method=method, dither=Image.Dither.NONE
         )
-    small.save(path, optimize=True, dpi=dots)
+    small.save(path, optimize=True, **dots)

@@ -176,9 +176,9 @@ def refined(film: Touching) -> tuple[Touching, Touching]:
     return coarse, film
 
 
-def measured(film: Touching) -> ThickEight:
+def measured(held: Touching) -> ThickEight:
     """Return a film, stable or not, with all its numbers, by enough harmonics."""
-    coarse, fine = refined(film)
+    coarse, fine = refined(held)
     family, point, values = fine.family, fine.point, fine.values
     film, twist = family.film(point), family.twist(point.value)
     change = abs(coarse.energy / fine.energy - 1) if coarse is not fine else math.inf

@@ -31,8 +31,9 @@ _OF_DIAMETER = 1 / 2
 _OF_LOOP = 1 / 3
 # A film is refined once in one solve, and laid on its mesh again where its strands part.
 _TIMES = 2
-# By which part of the diameter strands may overlap: rounding is on top of what is let be.
-_MOST = 2 * OVERLAP
+# By which part of the diameter strands may overlap: between places that are held beside
+# each other that may be more than elsewhere.
+_MOST = 10 * OVERLAP
 
 
 def search(

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
-from math import inf
 
 import click
 import numpy as np
 
-from eulerplateau.threads import one_thread
-from scripts.studies.common import markdown_table
+from scripts.studies.common import markdown_table, processes
 from scripts.studies.contact_starts.starts import FILMS, End, case, run
 
 STARTS = 500
@@ -19,16 +16,10 @@ STARTS = 500
 
 @click.command()
 @click.option("--starts", default=STARTS, help="How many; default: 500.")
-@click.option("--minutes", default=inf, help="Begin none after so many.")
-def main(starts: int, minutes: float) -> None:
+def main(starts: int) -> None:
     """Print how starts ended, how far laws are kept, and every start that breaks one."""
-    until = time.monotonic() + 60 * minutes
-    ends: list[End] = []
-    with one_thread():
-        for seed in range(starts):
-            if time.monotonic() > until:
-                break
-            ends.append(run(case(seed)))
+    with processes() as pool:
+        ends = list(pool.map(run, map(case, range(starts))))
     click.echo(f"{len(ends)} starts\n")
     for rows, words in ((_counts(ends), 3), (_extremes(ends), 1), (_failed(ends), 4)):
         click.echo(markdown_table(rows, words))

@@ -1,4 +1,4 @@
-"""Print the tables of docs/fishing-line.md and draw its diagram."""
+"""Print the tables of docs/fishing-line.md and draw its pictures."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from scripts.studies.common import ROOT, machine, markdown_table
 from scripts.studies.fishing_line.cycle import Cycle
 from scripts.studies.fishing_line.figures import draw_loop
 from scripts.studies.fishing_line.loads import coefficients, openings
+from scripts.studies.fishing_line.pictures import draw_run
 from scripts.studies.fishing_line.racket import racket_table
 from scripts.studies.fishing_line.welded import disk_yields, welded_table
 
@@ -23,7 +24,7 @@ from scripts.studies.fishing_line.welded import disk_yields, welded_table
     "runs",
     multiple=True,
     type=click.Path(path_type=Path),
-    help="A run up and down, to be put beside the films without a mesh.",
+    help="A run up and down, beside the films without a mesh; the first is drawn.",
 )
 @click.option(
     "--welded",
@@ -35,7 +36,7 @@ from scripts.studies.fishing_line.welded import disk_yields, welded_table
     "--out",
     type=click.Path(path_type=Path),
     default=ROOT / "docs/pictures/fishing-line",
-    help="Folder of the diagram. Default: docs/pictures/fishing-line.",
+    help="Folder of the pictures. Default: docs/pictures/fishing-line.",
 )
 def main(
     print_series: bool, runs: tuple[Path, ...], welded: tuple[Path, ...], out: Path
@@ -62,6 +63,8 @@ def main(
             click.echo(markdown_table(welded_table(welded), 0))
         out.mkdir(parents=True, exist_ok=True)
         draw_loop(out / "loop.png", cycles)
+        if runs:
+            draw_run(runs[0], out)
 
 
 if __name__ == "__main__":

@@ -48,8 +48,11 @@ from eulerplateau.threads import one_thread
 _DEPTH, _STEPS = 4, 30
 # The last step over the square of the first, which is about what a result errs by.
 _LAST = 0.01
-# A step below which there is only rounding, in L.
-_ROUNDING = 1e-12
+# A step, in L, that is no correction any more.
+_FAR = 0.1
+# A step below which there is only rounding, in L; and one that is rounding if others after
+# it are no smaller.
+_ROUNDING, _STUCK = 1e-12, 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,6 +66,8 @@ class Corrected:
     tensions : (n_b,) float, of the loop's edges
     energy, area, bending_energy : float
         energy = load * area + bending_energy
+    area_change : float
+        What was added to the area: about minus its error on the mesh.
     unevenness : float
         The largest ||dr/ds| - 1| along the loop, whose edges keep their lengths as wholes.
     corrections : int, steps it took
@@ -73,6 +78,7 @@ class Corrected:
     tensions: FloatArray
     energy: float
     area: float
+    area_change: float
     bending_energy: float
     unevenness: float
     corrections: int
@@ -84,22 +90,17 @@ class Corrected:
 
     @property
     def energy_change(self) -> float:
-        """What the correction adds to the energy: about minus the error on the mesh."""
+        """What was added to the energy."""
         return self.energy - self.found.energy
 
     @property
-    def area_change(self) -> float:
-        """What it adds to the area."""
-        return self.area - self.found.film_energy / self.load
-
-    @property
     def bending_change(self) -> float:
-        """What it adds to the bending energy."""
+        """What was added to the bending energy."""
         return self.bending_energy - self.found.bending_energy
 
     @property
     def moved(self) -> float:
-        """How far it moves the loop's vertices, root mean square: the shape's error."""
+        """How far the loop's vertices were moved, root mean square: the shape's error."""
         moved = self.shape.x_loop - self.found.shape.x_loop
         return float(np.sqrt(np.square(moved).sum(axis=1).mean()))
 
@@ -174,13 +175,16 @@ def _corrected(problem: Problem, found: Equilibrium) -> Corrected:
     )
     model = models.at(x)
     smooth = _Smooth(Splines(problem.loop.rest_lengths), smooth_film(film, x), found.load)
-    first = 0.0
+    first, before = 0.0, np.inf
     for number, (state, step) in enumerate(_steps(problem.loop, model, smooth)):
         first = first or step
-        if step <= max(_LAST * first**2, _ROUNDING):
+        stuck = before / 2 < step < _STUCK
+        before = step
+        if stuck or step <= max(_LAST * first**2, _ROUNDING):
             x = smooth.film.vertices(state.loop, state.film)
-            return _record(found, state, x, number)
-        if not step < 1:  # farther than the loop is long
+            area = film.local.relax(found.shape.x_loop).area
+            return _record(found, state, x, state.film.area - area, number)
+        if not step < _FAR:
             break
     raise NotConvergedError("the correction does not settle: the mesh is too coarse for it")
 
@@ -258,7 +262,7 @@ def _mixed(known: list[tuple[FloatArray, FloatArray]], weights: FloatArray) -> F
 
 
 def _record(
-    found: Equilibrium, state: _State, x: FloatArray, corrections: int
+    found: Equilibrium, state: _State, x: FloatArray, area_change: float, corrections: int
 ) -> Corrected:
     area, bending = state.film.area, state.loop.bending
     x[found.shape.loop] = state.loop.vertices
@@ -268,6 +272,7 @@ def _record(
         tensions=state.tensions,
         energy=found.load * area + bending,
         area=area,
+        area_change=area_change,
         bending_energy=bending,
         unevenness=float(np.abs(state.loop.speeds - 1).max()),
         corrections=corrections,

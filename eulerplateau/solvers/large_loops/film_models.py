@@ -32,6 +32,9 @@ from eulerplateau.solvers.second_variation import (
 )
 from eulerplateau.solvers.tangent_space import balanced, orthonormal
 
+# Loops of so few vertices are soon looked at as a whole, where a way leads down: one shift
+# is tried, and that farther from rest.
+_SMALL, _FARTHER = 48, 0.1
 # The residual from which on a loop is far from rest, and shifts that are tried there: the
 # first is as large as the softest bending mode of a bare loop.
 _FAR = 1e-2
@@ -90,12 +93,13 @@ class FilmModel:
         """Return the Newton step, cut short at the radius.
 
         Far from rest, where a way leads down, the Hessian is shifted until none does. None
-        near rest: such a step need not lead away from a saddle.
+        near rest, where such a step need not lead away from a saddle.
         """
+        far, most = (_FARTHER, _SHIFT) if len(self.x) <= _SMALL else (_FAR, _LARGEST)
         shift = 0.0
         moved = self._newton(shift)
         while moved is None:
-            if self.residual < _FAR or shift > _LARGEST:
+            if self.residual < far or shift >= most:
                 return None
             shift = max(_SHIFT, _LARGER * shift)
             moved = self._newton(shift)

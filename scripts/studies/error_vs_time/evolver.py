@@ -63,7 +63,7 @@ def find_evolver() -> str | None:
 
 
 def run_evolver(
-    data: Datafile, script: str, *, seconds: float = 300.0, weigh: bool = False
+    data: Datafile, script: str, *, seconds: float = 100.0, weigh: bool = False
 ) -> EvolverRun:
     """Run `script` on `data` for at most `seconds`; `weigh` costs it a few milliseconds.
 

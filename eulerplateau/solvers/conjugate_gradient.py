@@ -92,8 +92,8 @@ def search(
         left, aim = min(limit - spent, method.kicked_limit), method.kicked_residual
         again = descend(problem, kicked, best.tensions, load, left, observe, method, aim)
         spent += again.iterations
-        gained = (best.energy - again.energy) / abs(best.energy)
-        confirmed = abs(gained) <= _SAME_ENERGY
+        gained = _without_excess(problem, best) - _without_excess(problem, again)
+        confirmed = abs(gained) <= _SAME_ENERGY * abs(best.energy)
         if confirmed and not again.converged:
             break
         if not again.converged:
@@ -102,10 +102,21 @@ def search(
                 problem, again.shape, again.tensions, load, left, observe, method, aim
             )
             spent += again.iterations
-        best = again if again.energy < best.energy or not again.converged else best
         if confirmed:
+            best = min(best, again, key=lambda found: found.length_error)
             break
+        lower = _without_excess(problem, again) < _without_excess(problem, best)
+        best = again if lower or not again.converged else best
     if best.converged and not confirmed:
         best = replace(best, status=Status.SADDLE)
     seconds = time.perf_counter() - started
     return problem.classified(replace(best, iterations=spent, seconds=seconds))
+
+
+def _without_excess(problem: Problem, found: Equilibrium) -> float:
+    """Return the energy, alpha / L, that it would have if its edges kept their lengths.
+
+    To the first order: an excess that is tolerated may show more than energies may differ.
+    """
+    excess = problem.loop.constraint(found.shape.x_loop)
+    return found.energy + float(found.tensions @ excess)

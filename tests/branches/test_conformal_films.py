@@ -110,6 +110,7 @@ def test_energy_changes_by_area_and_moment():
         assert (4 * fine - coarse) / 3 == pytest.approx(slope, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_twist_that_costs_nothing_gives_back_known_films():
     flat, known = rod_film(Start.LOBES, 1700.0), planar_film(2, 1700.0)
     assert flat.energy == pytest.approx(known.energy, rel=1e-10)

@@ -148,6 +148,7 @@ def specials(points: list[LocusPoint]) -> list[tuple[str, FloatArray]]:
     return [(p.special, p.values) for p in points if p.special not in ("", "start")]
 
 
+@pytest.mark.slow
 def test_folds_go_through_their_cusp() -> None:
     points = curve(cusp, 0.5, 0.75, -0.25)
     assert {point.end for point in points} == {"", End.WINDOW}

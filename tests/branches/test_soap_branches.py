@@ -116,6 +116,7 @@ def test_planar_branch_is_the_plane_film_whatever_becomes_of_the_mesh() -> None:
     assert any(not np.array_equal(a, b) for a, b in pairwise(tilings))
 
 
+@pytest.mark.slow
 def test_load_of_the_twist_converges_at_second_order_to_the_exact_films() -> None:
     exact, sizes, errors = onset()[0].load, [], []
     for rings in (6, 9, 13):

@@ -75,6 +75,7 @@ def test_the_mode_of_the_fold_is_symmetric_and_that_of_the_pair_before_it_is_not
     assert pair.point.value < fold.point.value
 
 
+@pytest.mark.slow
 def test_the_symmetric_index_counts_what_the_fold_turns_unstable(
     diagram: list[CellPoint],
 ) -> None:

@@ -46,6 +46,7 @@ def test_dirichlet_energy_is_what_the_edge_does(crowding):
     assert 0.5 * loop @ basis.dirichlet @ loop == pytest.approx(work, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_dirichlet_energy_is_that_of_all_harmonics():
     """pi k |c_k|^2 summed, of coefficients by the fast Fourier transform."""
     basis = welded_basis(16, GENERAL)

@@ -142,6 +142,7 @@ def soap(tmp_path_factory: pytest.TempPathFactory) -> Exploration:
     return run_branches(validate(data, RunSpec, "test"), folder / "out")
 
 
+@pytest.mark.slow
 def test_film_energy_is_the_tension_times_the_area_on_disk_whatever_the_triangles(
     soap: Exploration,
 ) -> None:

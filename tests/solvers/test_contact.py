@@ -46,7 +46,7 @@ def eight(film: str, diameter: float, rings: int = 8) -> Equilibrium:
     ("film", "d"),
     [
         ("springs", 0.02),
-        ("dirichlet", 0.02),
+        pytest.param("dirichlet", 0.02, marks=pytest.mark.slow),
         pytest.param("area", 0.02, marks=pytest.mark.slow),
         ("area", 0.03),
     ],

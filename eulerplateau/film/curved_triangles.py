@@ -17,9 +17,8 @@ from functools import cached_property
 
 import numpy as np
 
-from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.arrays import BoolArray, FloatArray, IntArray, cross
 from eulerplateau.film.elimination import summed
-from eulerplateau.loop import cross
 
 # Three points inside, exact for polynomials of degree 2: enough for an error of O(h^4).
 _PLACES = np.array([[1, 1], [4, 1], [1, 4]]) / 6

@@ -32,7 +32,7 @@ from .motions import (
     sliding as sliding,
 )
 from .rod import Rod as Rod
-from .spline import SplineLoop as SplineLoop, Splines as Splines, cross as cross
+from .spline import SplineLoop as SplineLoop, Splines as Splines
 from .spreads import contact_spreads as contact_spreads
 from .strands import Strands as Strands, strands_of as strands_of
 from .stretches import ALONG as ALONG, from_one_strand as from_one_strand

@@ -132,7 +132,10 @@ class Loop:
         return bool((turns / self.mean_lengths).max() > 2 / self.diameter)
 
     def bending_energy(self, x_loop: FloatArray) -> float:
-        """Return sum_v <s_v> kappa_v^2 of loop positions (n_b, 3)."""
+        """Return sum_v <s_v> kappa_v^2 of loop positions (n_b, 3).
+
+        By differences: as a product with them it drowns in rounding on fine loops.
+        """
         turn = backward_differences(self.chords(x_loop) / self.rest_lengths[:, None])
         return float(np.vdot(turn, turn / self.mean_lengths[:, None]))
 

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, cross
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.mesh.triangles import area_vectors, cross, unit
+from eulerplateau.mesh.triangles import area_vectors, unit
 
 # Added to the normal equations of the quadric fit, whose entries are of order 1: keeps
 # them solvable where too few or too special neighbours leave a coefficient open.

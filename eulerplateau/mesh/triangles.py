@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.arrays import FloatArray, IntArray, cross
 
 
 def directed_edges(triangles: IntArray) -> IntArray:
@@ -28,15 +28,6 @@ def area_vectors(triangles: IntArray, x: FloatArray) -> FloatArray:
     """Return (n_t, 3) the area of each triangle times its unit normal."""
     a, b, c = x[triangles].transpose(1, 0, 2)
     return 0.5 * cross(b - a, c - a)
-
-
-def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the vector products (n, 3) of rows; half of the time of np.cross."""
-    product = np.empty_like(a)
-    for axis in range(3):
-        i, j = (axis + 1) % 3, (axis + 2) % 3
-        np.subtract(a[:, i] * b[:, j], a[:, j] * b[:, i], out=product[:, axis])
-    return product
 
 
 def unit(vectors: FloatArray) -> FloatArray:

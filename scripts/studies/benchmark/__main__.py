@@ -15,7 +15,6 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import backward_differences
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import SOLVERS, Equilibrium, Problem, displaced, solve
 from scripts.studies.benchmark.report import draw, read_csv, report, summary, write_csv
@@ -48,19 +47,12 @@ class Watch:
         """Judge the loop (n_b, 3) that a solver reports."""
         now = time.process_time()
         film = self.film.change(np.zeros_like(x_loop), x_loop)
-        off = abs((film + bending_energy(self.problem, x_loop)) / self.answer - 1)
+        off = abs((film + self.problem.loop.bending_energy(x_loop)) / self.answer - 1)
         error = max(off, self.problem.loop.length_error(x_loop))
         self.points.append((now - self.started, error))
         if now - self.started > SECONDS:
             raise OutOfTimeError
         self.started += time.process_time() - now
-
-
-def bending_energy(problem: Problem, x_loop: FloatArray) -> float:
-    """Return sum <s> kappa^2 by differences: as a product it drowns on fine loops."""
-    tangent = problem.loop.chords(x_loop) / problem.loop.rest_lengths[:, None]
-    turn = backward_differences(tangent)
-    return float(np.sum(np.sum(turn**2, axis=1) / problem.loop.mean_lengths))
 
 
 @click.group(invoke_without_command=True)

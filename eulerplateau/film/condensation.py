@@ -15,14 +15,13 @@ A small interior is one dense block (parts.py). A larger one is eliminated part 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.parts import Part, eliminate
+from eulerplateau.film.parts import Parts, eliminate, parts_of
 from eulerplateau.threads import one_thread
 
 if TYPE_CHECKING:
@@ -44,7 +43,7 @@ class Condensation:
 
     stiffness: FloatArray
     _order: IntArray
-    _parts: tuple[Part, ...]
+    _parts: Parts
 
     def force(self, x_loop: FloatArray) -> FloatArray:
         """Return the gradient of tr(x_b^T S x_b) (n_b, 3)."""
@@ -65,41 +64,10 @@ class Condensation:
         order = self._order[:n_i]
         columns = np.zeros((forces.size // n_i, len(self._order)))
         columns[:, :n_i] = forces.reshape(n_i, -1)[order].T
-        solve_fronts(*self._packed, columns)
+        solve_fronts(*self._parts.packed, columns)
         x = np.empty((n_i, len(columns)))
         x[order] = columns[:, :n_i].T
         return x.reshape(forces.shape)
-
-    @cached_property
-    def _packed(
-        self,
-    ) -> tuple[IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray]:
-        """All parts as arrays, for solve_kernels.py; the parts are then views of these."""
-        parts = list(self._parts)
-        counts = np.array([len(part.around) for part in parts], dtype=np.int64)
-        starts = np.array([part.start for part in parts], dtype=np.int64)
-        stops = np.array([part.stop for part in parts], dtype=np.int64)
-        sizes = (stops - starts) * (stops - starts + counts)
-        around = [part.around for part in parts]
-        data, filled = np.empty(sizes.sum()), 0
-        object.__setattr__(self, "_parts", ())  # so that they go as they are copied
-        for number, part in enumerate(parts):
-            views = []
-            for piece in (part.factor, part.half):
-                here = data[filled : (filled := filled + piece.size)]
-                views.append(here.reshape(piece.shape, order="F"))
-                views[-1][...] = piece
-            parts[number] = replace(part, factor=views[0], half=views[1])
-        object.__setattr__(self, "_parts", tuple(parts))
-        none = [np.zeros(0, dtype=np.int64)]
-        return (
-            starts,
-            stops,
-            np.append(0, np.cumsum(counts)),
-            np.concatenate(none + around),
-            np.cumsum(sizes) - sizes,
-            data,
-        )
 
     def carry(self, forces: FloatArray) -> FloatArray:
         """Return f_b - L_bi L_ii^-1 f_i (n_b, m): what forces (n, m) come to on the loop.
@@ -107,7 +75,7 @@ class Condensation:
         The adjoint of `extend`.
         """
         ordered = forces[self._order]
-        for part in self._parts:
+        for part in self._parts.each:
             ordered[part.around] += part.pulled(ordered[part.start : part.stop])[1]
         return ordered[len(ordered) - len(self.stiffness) :]
 
@@ -115,7 +83,7 @@ class Condensation:
         """Return the relaxed film (n_v, m) on a loop (n_b, m), coordinate by coordinate."""
         ordered = np.empty((len(self._order), x_loop.shape[1]))
         ordered[len(ordered) - len(x_loop) :] = x_loop
-        for part in reversed(self._parts):
+        for part in reversed(self._parts.each):
             ordered[part.start : part.stop] = part.unfolded(ordered[part.around])
         x = np.empty_like(ordered)
         x[self._order] = ordered
@@ -129,7 +97,7 @@ class Condensation:
         """
         ordered = np.empty((len(self._order), x_loop.shape[1]))
         ordered[len(inside) :] = x_loop
-        for part in reversed(self._parts):
+        for part in reversed(self._parts.each):
             ordered[part.start : part.stop] = part.unfolded(
                 ordered[part.around], inside[part.start : part.stop]
             )
@@ -144,7 +112,7 @@ class Condensation:
         """
         ordered = forces[self._order]
         inside = np.empty((len(ordered) - len(self.stiffness), ordered.shape[1]))
-        for part in self._parts:
+        for part in self._parts.each:
             own, left = part.pulled(ordered[part.start : part.stop])
             ordered[part.around] += left
             inside[part.start : part.stop] = own
@@ -159,17 +127,22 @@ def factorise(elimination: Elimination, entries: FloatArray) -> Condensation:
     """
     from eulerplateau.film.elimination import mirror
 
-    parts: list[Part] = []
     remainders: dict[int, FloatArray] = {}
     *inner, kept = elimination.fronts
+    # Factors at once where they stay: copies are as large.
+    parts = parts_of(
+        [front.start for front in inner],
+        [front.stop for front in inner],
+        [front.around for front in inner],
+    )
     for number, front in enumerate(inner):
         own = front.stop - front.start
         block = front.assemble(entries, remainders)
-        half, remainders[number], factor = eliminate(block, own)
-        parts.append(Part(front.start, front.stop, front.around, half, factor))
+        part = parts.each[number]
+        part.half[...], remainders[number], part.factor[...] = eliminate(block, own)
     stiffness = kept.assemble(entries, remainders)
     mirror(stiffness)
-    return Condensation(stiffness, elimination.order, tuple(parts))
+    return Condensation(stiffness, elimination.order, parts)
 
 
 def condense(
@@ -201,10 +174,12 @@ def _at_once(
     flat = np.bincount(place[row] * n + place[column], values, minlength=n * n)
     block: FloatArray = flat.astype(np.float64, copy=False).reshape(n, n)
     if not own:
-        return Condensation(block, order, ())
-    half, rest, factor = eliminate(block, own)
+        return Condensation(block, order, parts_of([], [], []))
+    parts = parts_of([0], [own], [np.arange(own, n)])
+    (part,) = parts.each
+    part.half[...], rest, part.factor[...] = eliminate(block, own)
     stiffness = np.tril(rest) + np.tril(rest, -1).T
-    return Condensation(stiffness, order, (Part(0, own, np.arange(own, n), half, factor),))
+    return Condensation(stiffness, order, parts)
 
 
 def _in_parts(

@@ -1,4 +1,4 @@
-"""One dense block of a symmetric matrix, of which the first rows are eliminated."""
+"""Dense blocks of a symmetric matrix, of each of which the first rows are eliminated."""
 
 from __future__ import annotations
 
@@ -43,6 +43,46 @@ class Part:
         """Return C^-1 f and what that leaves of forces f (n, m) on the rows around."""
         inside: FloatArray = dtrsm(1.0, self.factor, own, lower=1)
         return inside, -self.half @ inside
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The parts of a factor, first eliminated first, and what compiled loops read of them.
+
+    Attributes
+    ----------
+    packed : starts, stops, pointer, around, first, data
+        As solve_kernels.solve_fronts takes them; the parts' arrays are views of the last.
+    """
+
+    each: tuple[Part, ...]
+    packed: tuple[IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray]
+
+
+def parts_of(starts: list[int], stops: list[int], around: list[IntArray]) -> Parts:
+    """Return the parts of these rows, their arrays yet to be filled in."""
+    begins, ends = np.array(starts, dtype=np.int64), np.array(stops, dtype=np.int64)
+    counts = np.array([len(rows) for rows in around], dtype=np.int64)
+    sizes = (ends - begins) * (ends - begins + counts)
+    first, data = np.cumsum(sizes) - sizes, np.empty(sizes.sum())
+    each = []
+    for start, stop, rows, at in zip(starts, stops, around, first.tolist(), strict=True):
+        n = stop - start
+        below = at + n * n
+        factor = data[at:below].reshape((n, n), order="F")
+        half = data[below : below + len(rows) * n].reshape((len(rows), n), order="F")
+        each.append(Part(start, stop, rows, half, factor))
+    return Parts(
+        tuple(each),
+        (
+            begins,
+            ends,
+            np.append(0, np.cumsum(counts)),
+            np.concatenate([np.zeros(0, dtype=np.int64), *around]),
+            first,
+            data,
+        ),
+    )
 
 
 def eliminate(block: FloatArray, own: int) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -18,6 +18,7 @@ from scripts.studies.error_vs_time.arithmetic import (
 )
 from scripts.studies.error_vs_time.conformal import mesh_free, mesh_free_repeats
 from scripts.studies.error_vs_time.equal_error import equal_error, pairs
+from scripts.studies.error_vs_time.growth import growth
 from scripts.studies.error_vs_time.ours import solvers
 from scripts.studies.error_vs_time.picture import MARKERS, draw
 from scripts.studies.error_vs_time.records import (
@@ -278,6 +279,23 @@ def test_at_equal_error_the_first_mesh_that_is_as_good_in_all_is_compared() -> N
     table = equal_error({SPACE[0]: points(runs)})
     assert table[-2].endswith("| 5 |")
     assert equal_error({SPACE[0]: points(runs[:3])}) == []
+
+
+def test_growth_is_the_power_of_a_power_law() -> None:
+    """In vertices on uniform meshes, in loop edges on graded ones, from 72 of them on."""
+    sizes = [(n, 10 * n**3) for n in (36, 72, 144, 288)]
+    runs = [
+        replace(erring("newton", n, 7e-9 * size**of), vertices=vertices, mesh=mesh)
+        for mesh, of in (("uniform", 1.1), ("graded", 2.1))
+        for n, vertices in sizes
+        for size in (vertices if mesh == "uniform" else n,)
+    ]
+    runs[0] = replace(runs[0], cpu=1.0)  # overhead
+    found = [row.split(" | ")[3:] for row in growth(points(runs))[4:]]
+    assert found == [
+        [f"{10 * 72**3} to {10 * 288**3} vertices", "1.10 ± 0.00 |"],
+        ["72 to 288 loop edges", "2.10 ± 0.00 |"],
+    ]
 
 
 def test_what_is_not_known_is_not_as_good() -> None:

@@ -39,7 +39,7 @@ from scripts.studies.error_vs_time.scenes import SCENES, Scene
 from scripts.studies.error_vs_time.theirs import measure_evolver
 
 # Loop edges of the meshes, each twice as fine as the one before.
-LEVELS = {"uniform": 4, "graded": 5, "fan": 5, "lattice": 4}
+LEVELS = {"uniform": 5, "graded": 5, "fan": 5, "lattice": 4}
 COARSEST = 36
 # Without its interior a film's loop of 36 edges leads Evolver astray.
 COARSEST_IN_PLANE = 72

@@ -14,6 +14,7 @@ from scripts.studies.error_vs_time.arithmetic import (
     seconds_to,
 )
 from scripts.studies.error_vs_time.equal_error import equal_error
+from scripts.studies.error_vs_time.growth import growth
 from scripts.studies.error_vs_time.records import (
     EXTRAPOLATED,
     HARMONICS,
@@ -47,6 +48,8 @@ def markdown(found: list[Measurement]) -> str:
         "symmetry, converge exponentially and have no order.",
         "",
         *_orders(known),
+        "",
+        *growth(known),
         "",
         *_all_points(known),
         "",

@@ -7,8 +7,9 @@ from contextlib import AbstractContextManager
 from functools import cache
 from typing import Any, TypeVar
 
-import scipy.linalg  # noqa: F401 - brings a BLAS of its own, which is to be found too
 from threadpoolctl import ThreadpoolController
+
+from eulerplateau import lapack  # noqa: F401 - brings a BLAS of its own, to be found too
 
 T = TypeVar("T")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError
+from numpy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.control import Direction, StepControl

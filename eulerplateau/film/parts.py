@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError
-from scipy.linalg.blas import dsyrk, dtrsm
-from scipy.linalg.lapack import dpotrf
+from numpy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.lapack import dpotrf, dsyrk, dtrsm
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import LinAlgError
-from scipy.linalg.lapack import dpttrf, dpttrs
+from numpy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.lapack import dpttrf, dpttrs
 from eulerplateau.loop.loop import Loop, backward_differences, differences
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.arrays import BoolArray, FloatArray, IntArray, cross
 from eulerplateau.errors import MeshError
 
 # Distances below this, relative to the extent of the shape, count as contact: a thousand
@@ -76,7 +76,7 @@ def _near(corners: IntArray, x: FloatArray) -> Iterator[IntArray]:
     span = 2 * float(x[1].max()) or 1.0
     begin, end = strip + (low[1] / span)[triangle], strip + (high[1] / span)[triangle]
     order = np.argsort(begin)
-    triangle, strip = triangle[order], strip[order]
+    triangle, new = triangle[order], (strip == first[triangle])[order]
     behind = np.searchsorted(begin[order], end[order] + _SLACK, side="right")
     stops = np.cumsum(behind - np.arange(1, len(order) + 1))
     start = 0
@@ -84,18 +84,20 @@ def _near(corners: IntArray, x: FloatArray) -> Iterator[IntArray]:
         before = stops[start - 1] if start else 0
         stop = max(start + 1, int(np.searchsorted(stops, before + _AT_ONCE)))
         counts = np.diff(stops[start:stop], prepend=before)
-        at = np.repeat(np.arange(start, stop), counts)
         ahead = behind[start:stop] - stops[start:stop] + before
-        one, other = triangle[at], triangle[np.arange(len(at)) + np.repeat(ahead, counts)]
-        # Two that meet in several strips count in the first of them.
-        kept = np.flatnonzero(strip[at] == np.maximum(first[one], first[other]))
-        for lower, upper in zip(low, high, strict=True):
-            one, other = one[kept], other[kept]
-            meets = (lower[other] <= upper[one]) & (lower[one] <= upper[other])
+        one = np.repeat(np.arange(start, stop), counts)
+        other = np.arange(len(one)) + np.repeat(ahead, counts)
+        # Two that meet in several strips count in the first of them, new to one.
+        kept = np.flatnonzero(new.take(one) | new.take(other))
+        one, other = triangle.take(one.take(kept)), triangle.take(other.take(kept))
+        # Along axis 1 they meet, but for the slack.
+        for lower, upper in zip(low[::2], high[::2], strict=True):
+            meets = lower.take(other) <= upper.take(one)
+            meets &= lower.take(one) <= upper.take(other)
             kept = np.flatnonzero(meets)
-        one, other = one[kept], other[kept]
-        apart, others = np.ones(len(one), dtype=bool), np.take(corners, other, axis=1)
-        for column in np.take(corners, one, axis=1):
+            one, other = one.take(kept), other.take(kept)
+        apart, others = np.ones(len(one), dtype=bool), corners.take(other, axis=1)
+        for column in corners.take(one, axis=1):
             apart &= (column != others).all(axis=0)
         yield np.stack([one[apart], other[apart]])
         start = stop
@@ -115,7 +117,7 @@ def _cross(one: FloatArray, other: FloatArray, contact: float) -> BoolArray:
     another, under, there = _heights(other, one, contact)
     # Both triangles meet the common line of their planes in an interval; compare the two
     # along the coordinate axis closest to that line.
-    axis = np.abs(np.cross(normal, another, axis=0)).argmax(axis=0)
+    axis = np.abs(cross(normal.T, another.T)).argmax(axis=1)
     pair = np.arange(len(place))
     low, high = _interval(one[axis, :, pair].T, under)
     least, most = _interval(other[axis, :, pair].T, over)
@@ -133,7 +135,7 @@ def _heights(
     zero where that is contact; a triangle straddles that has corners on both sides.
     """
     own, away = face - face[:, :1], other - face[:, :1]
-    normal = np.cross(own[:, 1], own[:, 2], axis=0)
+    normal = cross(own[:, 1].T, own[:, 2].T).T
     height = (normal[:, None] * away).sum(axis=0)
     # A coordinate's rounding error moves the product by at most about that times this
     # square, also where the triangle is a sliver and its normal is lost in rounding.

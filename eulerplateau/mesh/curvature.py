@@ -16,7 +16,7 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray, cross
 from eulerplateau.mesh.disk import Disk
-from eulerplateau.mesh.triangles import area_vectors, unit
+from eulerplateau.mesh.triangles import area_vectors, corner_angles, unit
 
 # Added to the normal equations of the quadric fit, whose entries are of order 1: keeps
 # them solvable where too few or too special neighbours leave a coefficient open.
@@ -72,12 +72,15 @@ class Curvatures:
     @classmethod
     def of(cls, mesh: Disk, x: FloatArray) -> Curvatures:
         """Return those of the shape `x` (n_v, 3) of a mesh, in units of L."""
-        return cls.known(mesh, x, area_vectors(mesh.triangles, x))
+        vectors = area_vectors(mesh.triangles, x)
+        return cls.known(mesh, x, vectors, corner_angles(x[mesh.triangles], vectors))
 
     @classmethod
-    def known(cls, mesh: Disk, x: FloatArray, vectors: FloatArray) -> Curvatures:
-        """Return the same where the triangles' area vectors (n_t, 3) are known."""
-        return cls(_loop_frame(mesh, x, vectors), _angle_defects(mesh, x, vectors))
+    def known(
+        cls, mesh: Disk, x: FloatArray, vectors: FloatArray, angles: FloatArray
+    ) -> Curvatures:
+        """Return the same where the triangles' area vectors and angles (n_t, 3) are known."""
+        return cls(_loop_frame(mesh, x, vectors), _defects(mesh, angles))
 
 
 def loop_frame(mesh: Disk, x: FloatArray) -> LoopFrame:
@@ -120,16 +123,11 @@ def angle_defects(mesh: Disk, x: FloatArray) -> FloatArray:
 
     They sum to 2 pi on every shape, however crumpled: discrete Gauss-Bonnet.
     """
-    return _angle_defects(mesh, x, area_vectors(mesh.triangles, x))
+    vectors = area_vectors(mesh.triangles, x)
+    return _defects(mesh, corner_angles(x[mesh.triangles], vectors))
 
 
-def _angle_defects(mesh: Disk, x: FloatArray, vectors: FloatArray) -> FloatArray:
-    corner = x[mesh.triangles]
-    ahead = np.roll(corner, -1, axis=1) - corner
-    doubled = 2.0 * np.linalg.norm(vectors, axis=1)
-    # The way back from a corner is the way ahead from the one before it.
-    turns = -np.einsum("tki,tki->tk", ahead, np.roll(ahead, 1, axis=1))
-    angles = np.arctan2(doubled[:, None], turns)
+def _defects(mesh: Disk, angles: FloatArray) -> FloatArray:
     full = np.full(mesh.n_v, 2.0 * np.pi)
     full[mesh.loop] = np.pi
     return full - np.bincount(mesh.triangles.ravel(), angles.ravel(), minlength=mesh.n_v)

@@ -12,14 +12,8 @@ from eulerplateau.mesh.crossings import self_intersections
 from eulerplateau.mesh.curvature import Curvatures
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.shape import Shape
-from eulerplateau.mesh.triangles import (
-    area_vectors,
-    smallest_angle,
-)
+from eulerplateau.mesh.triangles import area_vectors, corner_angles
 from eulerplateau.mesh.waist import waist_path, waist_twist
-
-# In which order moments are summed: to look for it takes longer than to sum.
-_PATH = ["einsum_path", (1, 2), (0, 1)]
 
 
 @dataclass(frozen=True)
@@ -86,9 +80,10 @@ class Measurer:
         disk, x = self.disk_of(shape), shape.x
         crossings = self_intersections(x, disk.triangles)
         vectors = area_vectors(disk.triangles, x)
-        curvatures = Curvatures.known(disk, x, vectors)
-        frame = curvatures.frame
         corner = x[disk.triangles]
+        angles = corner_angles(corner, vectors)
+        curvatures = Curvatures.known(disk, x, vectors, angles)
+        frame = curvatures.frame
         areas = np.linalg.norm(vectors, axis=1)
         found = Measures(
             abs_kappa_n=float(np.abs(frame.kappa_n) @ frame.mean_lengths),
@@ -98,7 +93,7 @@ class Measurer:
             waist_twist=waist_twist(self._path, x),
             self_intersections=crossings,
             aspect=_aspect(corner, areas),
-            min_angle=smallest_angle(corner - np.roll(corner, 1, axis=1), areas),
+            min_angle=float(np.degrees(angles.min())),
         )
         return found, curvatures
 
@@ -131,7 +126,7 @@ def _aspect(corner: FloatArray, areas: FloatArray) -> float:
     centre = areas @ corner.mean(axis=1) / areas.sum()
     corner = corner - centre
     # A quadratic form integrates over a triangle exactly by the midpoints of its edges.
-    middle = 0.5 * (corner + np.roll(corner, -1, axis=1))
-    moments = np.einsum("t,tki,tkj->ij", areas, middle, middle, optimize=_PATH)
+    middle = 0.5 * (corner.sum(axis=1, keepdims=True) - corner).reshape(-1, 3)
+    moments = (middle.T * areas.repeat(3)) @ middle
     _, middling, largest = np.linalg.eigvalsh(moments)
     return float(np.sqrt(max(middling, 0.0) / largest))

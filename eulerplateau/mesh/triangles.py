@@ -30,6 +30,20 @@ def area_vectors(triangles: IntArray, x: FloatArray) -> FloatArray:
     return 0.5 * cross(b - a, c - a)
 
 
+def corner_angles(corner: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return the angles (n_t, 3) in [0, pi] at the corners (n_t, 3, 3) of triangles.
+
+    vectors : (n_t, 3) float, their `area_vectors`
+    """
+    ahead = np.concatenate([corner[:, 1:], corner[:, :1]], axis=1) - corner
+    back = np.concatenate([ahead[:, 2:], ahead[:, :2]], axis=1)
+    doubled = 2.0 * np.linalg.norm(vectors, axis=1)
+    # The way back from a corner is the way ahead from the one before it.
+    turns = -np.einsum("tki,tki->tk", ahead, back)
+    angles: FloatArray = np.arctan2(doubled[:, None], turns)
+    return angles
+
+
 def unit(vectors: FloatArray) -> FloatArray:
     """Return `vectors` (..., 3) scaled to length 1; zero vectors stay zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.arrays import BoolArray, FloatArray, IntArray, cross
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.triangles import area_vectors, unit
 
@@ -63,7 +63,7 @@ def waist_twist(path: WaistPath | None, x: FloatArray) -> float:
     # 1 + cos of the bend; a path that doubles back has no smallest rotation, only a floor.
     bend = np.maximum(0.5 * (turn * turn).sum(axis=1), 1e-12)
     carried = before - (fall / bend)[:, None] * turn
-    sine = (along[1:] * np.cross(carried, after)).sum(axis=1)
+    sine = (along[1:] * cross(carried, after)).sum(axis=1)
     cosine = (carried * after).sum(axis=1)
     turns = np.append(np.degrees(np.arctan2(sine, cosine)), 0.0)
     turns[turns <= -180.0 + _SAME_TWIST] += 360.0  # flat on itself: rounding chose the way

@@ -24,9 +24,9 @@ def write_whole(path: Path, content: bytes) -> None:
         temporary.write_bytes(content)
 
 
-def sync(path: Path) -> None:
-    """See to it that a file outlives a loss of power, its name included."""
-    for place in (path, path.parent):
+def sync(*paths: Path) -> None:
+    """See to it that files outlive a loss of power, their names included."""
+    for place in (*paths, *dict.fromkeys(path.parent for path in paths)):
         with suppress(OSError):
             number = os.open(place, os.O_RDONLY)
             try:

@@ -179,8 +179,7 @@ class RunFolder:
 
     def _sync(self) -> None:
         """See to it that rows outlive a loss of power; first the shapes they promise."""
-        for name in self._unsynced:
-            sync(self.path / name)
+        sync(*(self.path / name for name in self._unsynced))
         self._unsynced.clear()
         self._rows.sync()
         self._synced = time.monotonic()

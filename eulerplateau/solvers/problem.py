@@ -10,8 +10,8 @@ from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.linalg import LinAlgError
 from numpy.typing import ArrayLike
-from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError, SpecError

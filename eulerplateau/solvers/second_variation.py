@@ -17,9 +17,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from numpy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.lapack import dpotrf, dpotrs
 from eulerplateau.loop import EdgeTurns, LoopEnergy
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.tangent_coordinates import Columns, Coordinates, turned
@@ -84,10 +85,10 @@ class TangentModel:
     @cached_property
     def _newton(self) -> FloatArray | None:
         """The Newton step's coefficients (m,), None unless the Hessian is definite."""
-        try:
-            step: FloatArray = -cho_solve(cho_factor(self.hessian), self.gradient)
-        except LinAlgError:
+        factor, failed = dpotrf(self.hessian)
+        if failed:
             return None
+        step: FloatArray = -dpotrs(factor, self.gradient)[0]
         return step
 
     def step(self, coefficients: FloatArray) -> NewtonStep:

@@ -14,10 +14,10 @@ from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky, qr, solve_triangular
-from scipy.linalg.lapack import dsygst
+from numpy.linalg import LinAlgError
 
 from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.lapack import dgeqrf, dpotrf, dsygst, dtrtrs
 from eulerplateau.loop import EdgeTurns, LoopEnergy
 
 # Least pivot of the Gram factor, of the largest: on an even loop it is about 1 / n.
@@ -116,7 +116,7 @@ class Reflections:
 
 def reflections(columns: FloatArray) -> Reflections:
     """Return the reflections that turn independent columns (N, k) onto the first axes."""
-    (packed, tau), _ = qr(columns, mode="raw", check_finite=False)
+    packed, tau, _, _ = dgeqrf(columns)
     k = len(tau)
     vectors = np.tril(packed, -1)
     # Where there is nothing to turn, tau is 0.
@@ -151,9 +151,9 @@ class Turned:
         return self._solved(work, 0)
 
     def _solved(self, y: FloatArray, trans: int) -> FloatArray:
-        found: FloatArray = solve_triangular(
-            self.root, y, lower=True, trans=trans, check_finite=False
-        )
+        if not y.size:  # for LAPACK there is nothing so small
+            return y
+        found: FloatArray = dtrtrs(self.root, y, lower=1, trans=trans)[0]
         return found
 
     def hessian(
@@ -179,7 +179,9 @@ def turned(turns: EdgeTurns, free: FloatArray) -> Turned:
     weights = np.repeat(turns.weights, turns.across.shape[2])[:, None]
     gone = reflections(np.hstack([turns.closure(), turns.work(free * weights)]))
     norm = gone.rest_of_matrix(turns.mass())
-    root = cholesky(norm.T, lower=True, check_finite=False)
+    root, failed = dpotrf(norm.T, lower=1)
+    if failed:
+        raise LinAlgError("turns of the loop's edges hang together")
     pivots = np.diag(root)
     if len(root) and pivots.min() < _DEPENDENT * pivots.max():
         raise LinAlgError("turns of the loop's edges hang together")

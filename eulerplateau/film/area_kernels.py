@@ -43,6 +43,54 @@ def measure(
 
 
 @njit(cache=True)
+def least_sine(edges: FloatArray, areas: FloatArray) -> float:
+    """Return the sine of the smallest angle of triangles (n_t, 3, 3); 0 without an area.
+
+    It is opposite the shortest side, between the two others: see mesh.smallest_angle.
+    """
+    least = 1.0
+    for t in range(edges.shape[0]):
+        e, shortest, product = edges[t], np.inf, 1.0
+        for j in range(3):
+            size = np.sqrt(e[j, 0] ** 2 + e[j, 1] ** 2 + e[j, 2] ** 2)
+            shortest, product = min(shortest, size), product * size
+        sine = 0.0
+        if shortest > 0.0:
+            sine = 2.0 * areas[t] * shortest / product
+        if not sine >= least:
+            least = sine
+    return least
+
+
+@njit(cache=True)
+def are_near(normals: FloatArray, others: FloatArray, cosine: float) -> bool:
+    """Return whether unit normals (n, 3) turn less from others than by that cosine."""
+    for t in range(normals.shape[0]):
+        n, m = normals[t], others[t]
+        if not n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > cosine:
+            return False
+    return True
+
+
+@njit(cache=True)
+def sum_normals(
+    triangles: IntArray, normals: FloatArray, areas: FloatArray, found: FloatArray
+) -> None:
+    """Fill unit normals (n_v, 3) of vertices, the triangles' weighted by their areas."""
+    found[:] = 0.0
+    for t in range(triangles.shape[0]):
+        for j in range(3):
+            for d in range(3):
+                found[triangles[t, j], d] += normals[t, d] * areas[t]
+    for v in range(found.shape[0]):
+        n = found[v]
+        size = np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+        if size > 0.0:
+            for d in range(3):
+                n[d] /= size
+
+
+@njit(cache=True)
 def sum_gradient(
     triangles: IntArray, edges: FloatArray, normals: FloatArray, gradient: FloatArray
 ) -> None:
@@ -148,3 +196,93 @@ def sum_along(
                     p, q = (d + 1) % 3, (d + 2) % 3
                     value += turn * u[d] * (n[p] * w[q] - n[q] * w[p])
                 entries[place[t, i, j]] += value
+
+
+@njit(cache=True)
+def couple(
+    entries: FloatArray,
+    pairs: IntArray,
+    rows: IntArray,
+    columns: IntArray,
+    values: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Add a matrix's entries at `pairs` (k,) times values (n, d) to `found` (m, d).
+
+    rows, columns : (k,), where each of them is
+    """
+    for k in range(pairs.shape[0]):
+        for d in range(values.shape[1]):
+            found[rows[k], d] += entries[pairs[k]] * values[columns[k], d]
+
+
+@njit(cache=True)
+def pull(
+    blocks: FloatArray,
+    rows: IntArray,
+    columns: IntArray,
+    moved: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Add blocks (m, 3, 3) times displacements (n_v, 3) to `found` (n_v, 3)."""
+    for m in range(blocks.shape[0]):
+        block, step, force = blocks[m], moved[columns[m]], found[rows[m]]
+        for d in range(3):
+            force[d] += block[d, 0] * step[0] + block[d, 1] * step[1] + block[d, 2] * step[2]
+
+
+@njit(cache=True)
+def rise(
+    blocks: FloatArray,
+    pairs: IntArray,
+    rows: IntArray,
+    columns: IntArray,
+    normals: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Fill found (k,) with n_i . H_ik n_k of the blocks (m, 3, 3) at `pairs` (k,)."""
+    for at in range(pairs.shape[0]):
+        m = pairs[at]
+        block, one, other = blocks[m], normals[rows[m]], normals[columns[m]]
+        total = 0.0
+        for d in range(3):
+            along = one[0] * block[0, d] + one[1] * block[1, d] + one[2] * block[2, d]
+            total += along * other[d]
+        found[at] = total
+
+
+@njit(cache=True)
+def rise_and_follow(
+    blocks: FloatArray,
+    pairs: IntArray,
+    rows: IntArray,
+    columns: IntArray,
+    normals: FloatArray,
+    weight: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Fill found (k, 3) with w_k n_i . H_ik of the blocks (m, 3, 3) at `pairs` (k,)."""
+    for at in range(pairs.shape[0]):
+        m = pairs[at]
+        block, one, share = blocks[m], normals[rows[m]], weight[columns[m]]
+        for d in range(3):
+            along = one[0] * block[0, d] + one[1] * block[1, d] + one[2] * block[2, d]
+            found[at, d] = share * along
+
+
+@njit(cache=True)
+def follow(
+    blocks: FloatArray,
+    pairs: IntArray,
+    rows: IntArray,
+    columns: IntArray,
+    weight: FloatArray,
+    found: FloatArray,
+) -> None:
+    """Fill found (k, 3, 3) with w_i w_k H_ik of the blocks (m, 3, 3) at `pairs` (k,)."""
+    for at in range(pairs.shape[0]):
+        m = pairs[at]
+        share = weight[rows[m]] * weight[columns[m]]
+        for d in range(3):
+            for e in range(3):
+                found[at, d, e] = share * blocks[m, d, e]

@@ -59,16 +59,11 @@ class Condensation:
 
         Those are the rows 0 ... n_i - 1.
         """
-        from eulerplateau.film.solve_kernels import solve_fronts
+        from eulerplateau.film.solve_kernels import solve_rows
 
         n_i = len(forces)
-        order = self._order[:n_i]
-        columns = np.zeros((forces.size // n_i, len(self._order)))
-        columns[:, :n_i] = forces.reshape(n_i, -1)[order].T
-        solve_fronts(*self._packed, columns)
-        x = np.empty((n_i, len(columns)))
-        x[order] = columns[:, :n_i].T
-        return x.reshape(forces.shape)
+        rows = np.ascontiguousarray(forces).reshape(n_i, -1)
+        return solve_rows(*self._packed, self._order, rows).reshape(forces.shape)
 
     @cached_property
     def _packed(

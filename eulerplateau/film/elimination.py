@@ -112,10 +112,20 @@ def summed(place: IntArray, values: FloatArray, n: int) -> FloatArray:
 
     Of values (m, d) each column apart, (n, d).
     """
-    if values.ndim == 2:
-        return np.stack([summed(place, column, n) for column in values.T], axis=1)
-    # float64 even where nothing is added.
-    return np.bincount(place, values, minlength=n).astype(np.float64, copy=False)
+    if values.ndim == 1:
+        # float64 even where nothing is added.
+        return np.bincount(place, values, minlength=n).astype(np.float64, copy=False)
+    total = np.zeros((n, values.shape[1]))
+    add_rows(place, np.ascontiguousarray(values), total)
+    return total
+
+
+@njit(cache=True)
+def add_rows(place: IntArray, values: FloatArray, total: FloatArray) -> None:
+    """Add rows of values (m, d) to rows `place` of `total` (n, d)."""
+    for m in range(place.shape[0]):
+        for d in range(values.shape[1]):
+            total[place[m], d] += values[m, d]
 
 
 @njit(cache=True)

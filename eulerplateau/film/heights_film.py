@@ -34,7 +34,7 @@ class HeightsFilm(LocalFilm):
 
     def is_central(self, sides: TriangleGeometry) -> bool:
         """Return whether the film's normals are those at which it was made."""
-        return self.tilt(sides) > _NO_TILT
+        return self.upright(sides, _NO_TILT)
 
     def stiffness(self, sides: TriangleGeometry) -> Condensation:
         """Return the factorised interior of a film."""

@@ -17,7 +17,7 @@ from scipy.linalg.lapack import dsytrf, dsytrs
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.compiling import njit
 from eulerplateau.film.elimination import Elimination
-from eulerplateau.film.solve_kernels import solve_symmetric_fronts
+from eulerplateau.film.solve_kernels import solve_symmetric_rows
 
 # Columns of LAPACK's blocks.
 _COLUMNS = 32
@@ -33,11 +33,7 @@ class IndefiniteFactor:
 
     def solve(self, rhs: FloatArray) -> FloatArray:
         """Return the solution (n, m) for right-hand sides (n, m)."""
-        columns = np.ascontiguousarray(rhs[self._order].T)
-        solve_symmetric_fronts(*self._packed, columns)
-        x = np.empty((len(self._order), len(columns)))
-        x[self._order] = columns.T
-        return x
+        return solve_symmetric_rows(*self._packed, self._order, rhs)
 
 
 def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> IndefiniteFactor:

@@ -22,7 +22,7 @@ from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.film import area_kernels
 from eulerplateau.film.dissection import LARGEST, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
-from eulerplateau.mesh import neighbours, smallest_angle, unit
+from eulerplateau.mesh import neighbours
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,10 @@ class TriangleGeometry:
     normals: FloatArray
     areas: FloatArray
 
-    @property
+    @cached_property
     def smallest_angle(self) -> float:
         """The smallest angle of all triangles, degrees."""
-        return smallest_angle(self.edges, self.areas)
+        return float(np.degrees(np.arcsin(area_kernels.least_sine(self.edges, self.areas))))
 
     @cached_property
     def cotangent(self) -> FloatArray:
@@ -149,9 +149,9 @@ class Tiling:
 
     def vertex_normals(self, sides: TriangleGeometry) -> FloatArray:
         """Return unit normals (n_v, 3), the triangles' weighted by their areas."""
-        weighted = np.repeat((sides.normals * sides.areas[:, None])[:, None], 3, axis=1)
-        total = self.gather(weighted)
-        return unit(total)
+        found = np.empty((self.n_v, 3))
+        area_kernels.sum_normals(self.triangles, sides.normals, sides.areas, found)
+        return found
 
     def cotangent_laplacian(self, sides: TriangleGeometry) -> csc_array:
         """Return L (n_v, n_v) with area gradient = L x; the film at rest is L x = 0."""
@@ -184,7 +184,9 @@ class Tiling:
     def pull(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
         """Return a `hessian` (m, 3, 3) times a displacement (n_v, 3)."""
         i, k = self.pairs
-        return summed(i, np.einsum("pcd,pd->pc", blocks, moved[k]), self.n_v)
+        found = np.zeros((self.n_v, 3))
+        area_kernels.pull(blocks, i, k, np.ascontiguousarray(moved), found)
+        return found
 
     @property
     def pairs(self) -> tuple[IntArray, IntArray]:

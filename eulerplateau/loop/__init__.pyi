@@ -27,6 +27,7 @@ from .motions import (
     RIGID_MOTIONS as RIGID_MOTIONS,
     TURNS as TURNS,
     free_motions as free_motions,
+    orthonormal_motions as orthonormal_motions,
     remove_sliding as remove_sliding,
     rigid_motions as rigid_motions,
     sliding as sliding,

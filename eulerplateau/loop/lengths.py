@@ -9,7 +9,7 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.loop import Loop
-from eulerplateau.loop.turns import EdgeTurns, edge_turns, length_metric
+from eulerplateau.loop.turns import EdgeTurns, LengthMetric, edge_turns
 
 # Gauss-Newton converges quadratically: a handful of steps from a nearby shape.
 _PROJECTION_STEPS = 30
@@ -50,20 +50,24 @@ def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
     eps = float(np.finfo(np.float64).eps)
     rounding = 4 * eps * float(np.abs(x_loop).max() / loop.rest_lengths.min())
     small = max(1e-12, rounding)
-    x, error = x_loop, np.inf
+    x, error, s = x_loop, np.inf, loop.rest_lengths
     for _ in range(_PROJECTION_STEPS):
-        excess = loop.constraint(x)
-        previous, error = error, float(np.abs(excess / loop.rest_lengths).max())
+        chords = loop.chords(x)
+        lengths = np.sqrt(np.einsum("vd,vd->v", chords, chords))
+        # As Loop.constraint does, which would measure the edges once more.
+        excess = (lengths - s) * (lengths + s) / (2 * s)
+        previous, error = error, float(np.abs(excess / s).max())
         if not np.isfinite(error) or error > 1e3:
             return None
         # Quadratic convergence ends where rounding begins: then error stops falling.
         if error < 1e-15 or (error < small and error >= 0.25 * previous):
             return x
+        metric = LengthMetric(chords / s[:, None], loop.mean_lengths)
         try:
-            pull = length_metric(loop, x).solve(excess)
+            pull = metric.solve(excess)
         except LinAlgError:
             return None
-        x = x - loop.tension_force(x, pull) / mass
+        x = x - metric.force(pull) / mass
     return x if error < small else None
 
 

@@ -79,10 +79,20 @@ class Loop:
 
         They couple vertex v to itself, to v + 1 and to v + 2.
         """
+        found, stress = self._bare_chain.copy(), tensions / self.rest_lengths
+        found[0] += stress
+        found[0, 1:] += stress[:-1]
+        found[0, 0] += stress[-1]
+        found[1] -= stress
+        return found
+
+    @cached_property
+    def _bare_chain(self) -> FloatArray:
+        """The same without tensions."""
         s, m = self.rest_lengths, self.mean_lengths
         after = np.roll(m, -1)
         # The same by the edges: each with itself, and with the next.
-        own = 2 * (1 / m + 1 / after) / s**2 + tensions / s
+        own = 2 * (1 / m + 1 / after) / s**2
         beside = -2 / (s * np.roll(s, -1) * after)
         before = np.roll(beside, 1)
         return np.stack(

@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from scipy.sparse import coo_array, csc_array, csr_array
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dgbtrf, dgbtrs
 
 from eulerplateau.arrays import FloatArray, IntArray, cross
 
@@ -29,6 +29,8 @@ _END = (
 _BEGINNING = tuple((-1) ** k * p(Polynomial((1.0, -1.0))) for k, p in enumerate(_END))
 # Gauss points of an edge: exact for the squared second derivative, of degree 6.
 _POINTS = 4
+# Entries of a row beside the diagonal, on either side: two unknowns a vertex, two vertices.
+_BAND = 5
 
 
 def _hermite(t: FloatArray, order: int) -> FloatArray:
@@ -43,8 +45,7 @@ _VALUE, _FIRST, _SECOND = (_hermite(_T, order) for order in range(3))
 _MIDDLE = _hermite(np.array([0.5]), 0)
 # Jumps of the third and the fourth derivative (2, 2, 2, 3): by order, the edge before a
 # vertex and, negative, the one after it, its beginning and end, the power of its length.
-_ORDERS = np.array([3, 4]).reshape(2, 1, 1, 1, 1)
-_POWERS = np.arange(3)[:, None]
+_ORDERS, _POWERS = np.array([3, 4]), np.arange(3)
 _JUMPS = np.stack(
     [[_hermite(np.ones(1), order)[0], -_hermite(np.zeros(1), order)[0]] for order in (3, 4)]
 ).reshape(2, 2, 2, 3)
@@ -59,20 +60,21 @@ class Splines:
     def through(self, x: FloatArray) -> SplineLoop:
         """Return the spline through a loop's vertices (n, 3)."""
         data = np.empty((len(x), 6, 3))
-        derivatives = self._factor.solve(self._knots @ x).reshape(len(x), 2, -1)
+        derivatives = self._solved(np.matmul(self._knots, x[self._around]))
         at_vertices = np.concatenate([x[:, None], derivatives], axis=1)
         np.multiply(at_vertices, self._powers, out=data[:, :3])
-        np.multiply(at_vertices[self._after], self._powers, out=data[:, 3:])
+        np.multiply(at_vertices[self._around[:, 2]], self._powers, out=data[:, 3:])
         return SplineLoop(self, data)
 
     def pulled_back(self, by_data: FloatArray) -> FloatArray:
         """Return a gradient by the vertices (n, 3), given by Hermite's data (n, 6, 3)."""
-        n = len(by_data)
+        before, _, after = self._around.T
         at_vertices = self._powers * by_data[:, :3]
-        at_vertices[self._after] += self._powers * by_data[:, 3:]
-        derivatives = self._factor.solve(at_vertices[:, 1:].reshape(2 * n, -1), trans="T")
-        found: FloatArray = at_vertices[:, 0] + self._adjoint @ derivatives
-        return found
+        at_vertices += (self._powers * by_data[:, 3:])[before]
+        derivatives = self._solved(at_vertices[:, 1:], adjoint=True)
+        by_knots = np.matmul(self._knots.swapaxes(1, 2), derivatives)
+        found: FloatArray = at_vertices[:, 0] + by_knots[:, 1]
+        return found + by_knots[after, 0] + by_knots[before, 2]
 
     @cached_property
     def _powers(self) -> FloatArray:
@@ -81,44 +83,62 @@ class Splines:
         return h[:, :, None]
 
     @cached_property
-    def _after(self) -> IntArray:
-        return np.roll(np.arange(len(self.lengths)), -1)
+    def _around(self) -> IntArray:
+        """The vertex (n, 3) before each, itself, and the one after it."""
+        at = np.arange(len(self.lengths))
+        return np.stack([np.roll(at, 1), at, np.roll(at, -1)], axis=1)
 
     @cached_property
-    def _factor(self) -> SuperLU:
-        """The equations of the derivatives at the vertices, factorised."""
-        return splu(self._continuity[0])
+    def _jumps(self) -> FloatArray:
+        """Jumps of the third and the fourth derivative at each vertex (n, 2, 3, 3).
 
-    @cached_property
-    def _knots(self) -> csr_array:
-        """What the vertices' positions contribute to these equations."""
-        return self._continuity[1]
-
-    @cached_property
-    def _adjoint(self) -> csr_array:
-        return csr_array(self._knots.T)
-
-    @cached_property
-    def _continuity(self) -> tuple[csc_array, csr_array]:
-        """Equations of the third and the fourth derivative: the edge before, minus after.
-
-        The unknowns are x' and x'' at vertex 0, at vertex 1, ...
+        By what x, x' and x'' at the vertex before, there and after contribute to them.
         """
-        n, h, after = len(self.lengths), self.lengths, self._after
-        # By order, edge, its end, power of its length, and vertex: (2, 2, 2, 3, n).
-        lengths = np.stack([h, h[after]])
-        entry = _JUMPS[..., None] * (h / lengths)[:, None, None] ** _ORDERS
-        entry = entry * lengths[:, None, None] ** _POWERS
-        at = np.arange(n)
-        vertex = np.stack([[at, after], [after, after[after]]])[None, :, :, None]
-        row = np.broadcast_to(2 * at + _ORDERS - _ORDERS.min(), entry.shape)
-        column = np.broadcast_to(2 * vertex + _POWERS - 1, entry.shape)
-        inside = (..., slice(1, None), slice(None))
-        known = (..., slice(0, 1), slice(None))
-        columns = np.broadcast_to(vertex, entry[known].shape)
-        matrix = _sparse(entry[inside], row[inside], column[inside], (2 * n, 2 * n))
-        knots = _sparse(-entry[known], row[known], columns, (2 * n, n))
-        return csc_array(matrix), csr_array(knots)
+        before, after = self.lengths[self._around[:, 0]], self.lengths
+        found = np.zeros((len(after), 2, 3, 3))
+        for place, h in enumerate((before, after)):
+            # Both in units of the edge after the vertex.
+            scale = (after / h)[:, None] ** _ORDERS
+            by_ends = scale[:, :, None, None] * _JUMPS[:, place]
+            found[:, :, place : place + 2] += by_ends * (h[:, None] ** _POWERS)[:, None, None]
+        return found
+
+    @cached_property
+    def _knots(self) -> FloatArray:
+        """What the vertices' positions contribute to the equations (n, 2, 3)."""
+        return np.ascontiguousarray(-self._jumps[..., 0])
+
+    def _solved(self, rhs: FloatArray, adjoint: bool = False) -> FloatArray:
+        """Return the derivatives (n, 2, 3) that solve their equations, or the adjoint."""
+        factor, pivots, order = self._factor
+        ordered = rhs[order].reshape(2 * len(order), -1)
+        solved, _ = dgbtrs(factor, _BAND, _BAND, ordered, pivots, trans=int(adjoint))
+        found = np.empty_like(rhs)
+        found[order] = solved.reshape(rhs.shape)
+        return found
+
+    @cached_property
+    def _factor(self) -> tuple[FloatArray, IntArray, IntArray]:
+        """The equations of x' and x'' at the vertices, factorised, and their order.
+
+        In the order 0, n - 1, 1, n - 2, ... neighbours are two places apart at most, round
+        the whole loop: the matrix is banded.
+        """
+        n = len(self.lengths)
+        order = np.empty(n, dtype=np.int64)
+        order[::2], order[1::2] = np.arange((n + 1) // 2), np.arange(n - 1, n - 1 - n // 2, -1)
+        place = np.empty_like(order)
+        place[order] = np.arange(n)
+        unknown = np.arange(2)
+        row = 2 * place[:, None, None, None] + unknown[:, None, None]
+        column = 2 * place[self._around][:, None, :, None] + unknown
+        matrix = np.zeros((3 * _BAND + 1, 2 * n))
+        at = np.broadcast_arrays(2 * _BAND + row - column, column)
+        np.add.at(matrix, tuple(at), self._jumps[..., 1:])
+        factor, pivots, failed = dgbtrf(matrix, _BAND, _BAND)
+        if failed:
+            raise LinAlgError("the loop has edges without length")
+        return factor, pivots, order
 
 
 @dataclass(frozen=True)
@@ -206,9 +226,3 @@ def _along(basis: FloatArray, data: FloatArray) -> FloatArray:
 def _adjoint(basis: FloatArray, forces: FloatArray) -> FloatArray:
     """Return the gradient by data (n, 6, 3) of what forces (n, m, 3) do on such sums."""
     return _along(basis.T, forces)
-
-
-def _sparse(
-    entry: FloatArray, row: IntArray, column: IntArray, shape: tuple[int, int]
-) -> coo_array:
-    return coo_array((entry.ravel(), (row.ravel(), column.ravel())), shape=shape)

@@ -207,11 +207,12 @@ def _in_parts(
 ) -> Condensation:
     from scipy.sparse import csr_array
 
-    from eulerplateau.film.dissection import dissect
+    from eulerplateau.film.dissection import Graph, dissect
     from eulerplateau.film.elimination import plan
 
     n = len(loop) + len(interior)
     rows = csr_array((values, (row, column)), shape=(n, n))
-    pieces = dissect(rows, loop, interior)
+    graph = Graph(rows.indptr.astype(np.int64), rows.indices.astype(np.int64))
+    pieces = dissect(graph, loop, interior)
     row = np.repeat(np.arange(n), np.diff(rows.indptr))
     return factorise(plan(row, rows.indices, pieces, loop), rows.data)

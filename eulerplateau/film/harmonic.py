@@ -60,7 +60,7 @@ class Follower:
 
 def follower(tiling: Tiling, sides: TriangleGeometry) -> Follower:
     """Return what follows the loop on a shape; LinAlgError where that is too degenerate."""
-    entries = tiling.cotangent_laplacian(sides).data
+    entries = tiling.cotangent_laplacian(sides)
     pairs, elimination = tiling.inside
     return Follower(tiling, entries, factorise(elimination, entries[pairs]))
 

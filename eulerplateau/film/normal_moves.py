@@ -108,7 +108,7 @@ class NormalHeights:
 
     def stiffness(self, sides: TriangleGeometry) -> Condensation:
         """Factorise n . H n (n_i, n_i); LinAlgError unless it is positive definite."""
-        entries = self.tiling.normal_hessian(sides, self.normals).data
+        entries = self.tiling.normal_hessian(sides, self.normals)
         pairs, elimination = self.tiling.inside
         return factorise(elimination, entries[pairs])
 

@@ -20,7 +20,7 @@ from scipy.sparse import csc_array
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.film import area_kernels
-from eulerplateau.film.dissection import LARGEST, dissect
+from eulerplateau.film.dissection import LARGEST, Graph, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
 from eulerplateau.mesh import neighbours
 
@@ -153,17 +153,25 @@ class Tiling:
         area_kernels.sum_normals(self.triangles, sides.normals, sides.areas, found)
         return found
 
-    def cotangent_laplacian(self, sides: TriangleGeometry) -> csc_array:
-        """Return L (n_v, n_v) with area gradient = L x; the film at rest is L x = 0."""
+    def cotangent_laplacian(self, sides: TriangleGeometry) -> FloatArray:
+        """Return L with area gradient = L x, an entry for each of `pairs` (m,).
+
+        The film at rest is L x = 0.
+        """
         return self.filled(sides.cotangent)
 
-    def filled(self, blocks: FloatArray) -> csc_array:
-        """Return the matrix (n_v, n_v) that couples corners by blocks (n_t, 3, 3)."""
-        return self._scalar.fill(blocks)
+    def filled(self, blocks: FloatArray) -> FloatArray:
+        """Return what couples corners by blocks (n_t, 3, 3), an entry for each of `pairs`."""
+        place = self._scalar.place.ravel()
+        return summed(place, blocks.ravel(), len(self._scalar.indices))
 
-    def normal_hessian(self, sides: TriangleGeometry, directions: FloatArray) -> csc_array:
-        """Return the Hessian (n_v, n_v) for displacements along `directions` (n_v, 3)."""
-        entries = self._scalar.empty()
+    def matrix(self, entries: FloatArray) -> csc_array:
+        """Return the matrix (n_v, n_v) with these entries (m,), one for each of `pairs`."""
+        return self._scalar.matrix(entries)
+
+    def normal_hessian(self, sides: TriangleGeometry, directions: FloatArray) -> FloatArray:
+        """Return the Hessian for displacements along `directions` (n_v, 3), by `pairs`."""
+        entries = np.zeros(len(self._scalar.indices))
         area_kernels.sum_along(
             sides.cotangent,
             sides.normals,
@@ -172,7 +180,7 @@ class Tiling:
             self._scalar.place,
             entries,
         )
-        return self._scalar.matrix(entries)
+        return entries
 
     def hessian(self, sides: TriangleGeometry) -> FloatArray:
         """Return the whole Hessian, a block (3, 3) for each of `pairs` (m, 3, 3)."""
@@ -209,7 +217,9 @@ class Tiling:
         return self._dissected(LARGEST // 3)
 
     def _dissected(self, largest: int) -> list[IntArray]:
-        graph = self._scalar.matrix(np.ones(len(self._scalar.indices))).tocsr()
+        if len(self.interior) <= largest:
+            return [np.arange(len(self.interior))] if len(self.interior) else []
+        graph = Graph(self._scalar.indptr, self._scalar.indices)
         return [
             np.searchsorted(self.interior, piece)
             for piece in dissect(graph, self.loop, self.interior, largest)
@@ -273,16 +283,7 @@ class _Pattern:
         """The column of every entry."""
         return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
 
-    def empty(self) -> FloatArray:
-        """Return zeros for the entries of a matrix with this pattern."""
-        return np.zeros(len(self.indices))
-
     def matrix(self, entries: FloatArray) -> csc_array:
         """Return the matrix with these entries."""
         n = len(self.indptr) - 1
         return csc_array((entries, self.indices, self.indptr), shape=(n, n))
-
-    def fill(self, blocks: FloatArray) -> csc_array:
-        """Return the matrix with the element matrices (n_t, 3, 3) summed into it."""
-        place = self.place.ravel()
-        return self.matrix(summed(place, blocks.ravel(), len(self.indices)))

@@ -17,7 +17,7 @@ from numpy.polynomial import Polynomial
 from scipy.linalg import LinAlgError
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 
-from eulerplateau.arrays import FloatArray, IntArray, cross
+from eulerplateau.arrays import FloatArray, IntArray
 
 # What multiplies x, h x', h^2 x'' at the end of an edge of length h, by t = 0 ... 1.
 _END = (
@@ -42,6 +42,9 @@ def _hermite(t: FloatArray, order: int) -> FloatArray:
 _T, _WEIGHTS = np.polynomial.legendre.leggauss(_POINTS)
 _T, _WEIGHTS = 0.5 * (_T + 1), 0.5 * _WEIGHTS
 _VALUE, _FIRST, _SECOND = (_hermite(_T, order) for order in range(3))
+# By this, C (6, 6), data d make up the integral of r x r' ds: it is the sum of d x C d.
+_AHEAD = 0.5 * (_VALUE.T @ (_WEIGHTS[:, None] * _FIRST))
+_AHEAD -= _AHEAD.T.copy()
 _MIDDLE = _hermite(np.array([0.5]), 0)
 # Jumps of the third and the fourth derivative (2, 2, 2, 3): by order, the edge before a
 # vertex and, negative, the one after it, its beginning and end, the power of its length.
@@ -187,21 +190,24 @@ class SplineLoop:
     @cached_property
     def spanned(self) -> FloatArray:
         """Half the integral of r x r' ds (3,): area times normal of a flat loop."""
-        turned = cross(_along(_VALUE, self.data), self._first)
-        spanned: FloatArray = 0.5 * (_WEIGHTS @ turned.sum(axis=0))
-        return spanned
+        products = self.data.reshape(-1, 3).T @ self._ahead.reshape(-1, 3)
+        turned: FloatArray = products[[1, 2, 0], [2, 0, 1]] - products[[2, 0, 1], [1, 2, 0]]
+        return 0.5 * turned
 
     def spanned_gradient(self, normal: FloatArray) -> FloatArray:
         """Return the gradient of its part along a normal (3,).
 
-        d(r x r') . n = dr . (r' x n) + dr' . (n x r).
+        It is C d x n, d the data: that part is half the sum of d . (C d x n).
         """
         x, y, z = normal.tolist()
         turn = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        half = 0.5 * _WEIGHTS[:, None]
-        coupled = np.matmul(_VALUE.T, half * _FIRST) - np.matmul(_FIRST.T, half * _VALUE)
-        gradient: FloatArray = np.matmul(_along(coupled, self.data), turn)
+        gradient: FloatArray = np.matmul(self._ahead, turn)
         return gradient
+
+    @cached_property
+    def _ahead(self) -> FloatArray:
+        """The data times C (n, 6, 3)."""
+        return _along(_AHEAD, self.data)
 
     @property
     def middles(self) -> FloatArray:

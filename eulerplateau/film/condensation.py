@@ -15,7 +15,7 @@ A small interior is one dense block (parts.py). A larger one is eliminated part 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -84,7 +84,7 @@ class Condensation:
                 here = data[filled : (filled := filled + piece.size)]
                 views.append(here.reshape(piece.shape, order="F"))
                 views[-1][...] = piece
-            parts[number] = replace(part, factor=views[0], half=views[1])
+            parts[number] = Part(part.start, part.stop, part.around, views[1], views[0])
         object.__setattr__(self, "_parts", tuple(parts))
         none = [np.zeros(0, dtype=np.int64)]
         return (

@@ -20,7 +20,7 @@ _LANDMARKS = 8
 
 
 class Graph(NamedTuple):
-    """Which vertices have an edge in common: those of v are indices[indptr[v]:indptr[v + 1]].
+    """Which vertices have edges in common: those of v are indices[indptr[v]:indptr[v + 1]].
 
     One may be listed more than once, and be v itself.
     """

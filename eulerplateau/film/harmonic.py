@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.film import area_kernels
+from eulerplateau.film import hessian_kernels
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.tiling import Tiling, TriangleGeometry
 
@@ -38,7 +38,7 @@ class Follower:
         values = np.empty((tiling.n_v, moved.shape[1]))
         values[tiling.loop] = moved
         pull = np.zeros((len(tiling.interior), moved.shape[1]))
-        area_kernels.couple(self.entries, pairs, inside, on_loop, moved, pull)
+        hessian_kernels.couple(self.entries, pairs, inside, on_loop, moved, pull)
         values[tiling.interior] = -self.inverse.solve(pull)
         return values
 
@@ -48,7 +48,7 @@ class Follower:
         pairs, inside, on_loop = tiling.coupled
         held = self.inverse.solve(forces[tiling.interior])
         pull = np.zeros((len(tiling.loop), forces.shape[1]))
-        area_kernels.couple(self.entries, pairs, on_loop, inside, held, pull)
+        hessian_kernels.couple(self.entries, pairs, on_loop, inside, held, pull)
         carried: FloatArray = forces[tiling.loop] - pull
         return carried
 

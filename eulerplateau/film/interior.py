@@ -155,9 +155,11 @@ class LocalFilm(ABC):
     normals: FloatArray
     follower: Follower
     variations: InteriorUnknowns
-    # The last films asked for, by their loops: a solver comes back to them for force, energy
-    # and Hessian.
-    _recent: list[tuple[FloatArray, FilmAtRest]] = field(default_factory=list, init=False, repr=False)
+    # The last films asked for, by their loops: a solver comes back to them for force,
+    # energy and Hessian.
+    _recent: list[tuple[FloatArray, FilmAtRest]] = field(
+        default_factory=list, init=False, repr=False
+    )
     # The last interior that was factorised on the way to rest, kept for films near by.
     _inverse: list[Condensation] = field(default_factory=list, init=False, repr=False)
 
@@ -203,8 +205,11 @@ class LocalFilm(ABC):
         Raises LinAlgError if there is none near the reference: it has torn or folded.
         """
         loop = self.tiling.loop
-        for its_loop, known in self._recent:
-            if its_loop is x_loop or np.array_equal(its_loop, x_loop):
+        for number, (its_loop, known) in enumerate(self._recent):
+            if its_loop is x_loop:
+                return known
+            if np.array_equal(its_loop, x_loop):
+                self._recent[number] = (x_loop, known)
                 return known
         base = self.x + self.follow(x_loop - self.x[loop])
         base[loop] = x_loop
@@ -227,10 +232,9 @@ class LocalFilm(ABC):
         """Return the film displaced by u from a mesh (n_v, 3); None if it folds over."""
         x = base.copy()
         x[self.tiling.interior] += self.variations.displaced(u)
-        sides = self.tiling.sides(x)
-        if not self.unfolded(sides):
-            return None
-        return FilmAtRest(self, x, u, sides, self.tiling.gradient(sides))
+        before = self.sides.normals
+        standing = self.tiling.standing(x, before, LIMITS.folded)
+        return None if standing is None else FilmAtRest(self, x, u, *standing)
 
     def _begun(self, base: FloatArray) -> FilmAtRest:
         """Return the film to begin with: the last, and its response as far as it goes."""

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film import area_kernels
+from eulerplateau.film import hessian_kernels
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.elimination import Elimination, plan, summed
 from eulerplateau.film.indefinite import IndefiniteFactor, factorise_indefinite
@@ -138,9 +138,11 @@ class NormalHeights:
         up, across = np.empty(len(heights)), np.empty((len(coupling), 3))
         kept = np.empty((len(loop), 3, 3))
         i, k = self.tiling.pairs
-        area_kernels.rise(blocks, heights, i, k, self.normals, up)
-        area_kernels.rise_and_follow(blocks, coupling, i, k, self.normals, self.weight, across)
-        area_kernels.follow(blocks, loop, i, k, self.weight, kept)
+        hessian_kernels.rise(blocks, heights, i, k, self.normals, up)
+        hessian_kernels.rise_and_follow(
+            blocks, coupling, i, k, self.normals, self.weight, across
+        )
+        hessian_kernels.follow(blocks, loop, i, k, self.weight, kept)
         return up, across.ravel(), kept.ravel()
 
     def followed(self, moved: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
-from eulerplateau.film import area_kernels
+from eulerplateau.film import area_kernels, hessian_kernels
 from eulerplateau.film.dissection import LARGEST, Graph, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
 from eulerplateau.mesh import neighbours
@@ -44,6 +44,11 @@ class TriangleGeometry:
     def smallest_angle(self) -> float:
         """The smallest angle of all triangles, degrees."""
         return float(np.degrees(np.arcsin(area_kernels.least_sine(self.edges, self.areas))))
+
+    @cached_property
+    def scale(self) -> float:
+        """The largest part of a side along an axis."""
+        return max(float(self.edges.max()), -float(self.edges.min()))
 
     @cached_property
     def cotangent(self) -> FloatArray:
@@ -125,12 +130,26 @@ class Tiling:
 
     def sides(self, x: FloatArray) -> TriangleGeometry:
         """Return the triangles of the shape x (n_v, 3)."""
+        arrays = self._unmeasured()
+        area_kernels.measure(np.ascontiguousarray(x), self.triangles, *arrays)
+        return TriangleGeometry(*arrays)
+
+    def standing(
+        self, x: FloatArray, normals: FloatArray, cosine: float
+    ) -> tuple[TriangleGeometry, FloatArray] | None:
+        """Return the triangles of a shape x (n_v, 3) and the gradient of its area (n_v, 3).
+
+        None where one turns from these normals (n_t, 3) by that cosine, or has no area.
+        """
+        arrays, gradient = self._unmeasured(), np.zeros_like(x)
+        known = x, self.triangles, normals, cosine
+        if not area_kernels.stand(*known, *arrays, gradient):
+            return None
+        return TriangleGeometry(*arrays), gradient
+
+    def _unmeasured(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         n = len(self.triangles)
-        sides = TriangleGeometry(np.empty((n, 3, 3)), np.empty((n, 3)), np.empty(n))
-        area_kernels.measure(
-            np.ascontiguousarray(x), self.triangles, sides.edges, sides.normals, sides.areas
-        )
-        return sides
+        return np.empty((n, 3, 3)), np.empty((n, 3)), np.empty(n)
 
     def gradient(self, sides: TriangleGeometry) -> FloatArray:
         """Return the gradient of the area (n_v, 3)."""
@@ -161,39 +180,34 @@ class Tiling:
         return self.filled(sides.cotangent)
 
     def filled(self, blocks: FloatArray) -> FloatArray:
-        """Return what couples corners by blocks (n_t, 3, 3), an entry for each of `pairs`."""
+        """Return what couples corners by blocks (n_t, 3, 3), by `pairs` (m,)."""
         place = self._scalar.place.ravel()
         return summed(place, blocks.ravel(), len(self._scalar.indices))
 
     def matrix(self, entries: FloatArray) -> csc_array:
         """Return the matrix (n_v, n_v) with these entries (m,), one for each of `pairs`."""
-        return self._scalar.matrix(entries)
+        data = entries, self._scalar.indices, self._scalar.indptr
+        return csc_array(data, shape=2 * (self.n_v,))
 
     def normal_hessian(self, sides: TriangleGeometry, directions: FloatArray) -> FloatArray:
         """Return the Hessian for displacements along `directions` (n_v, 3), by `pairs`."""
         entries = np.zeros(len(self._scalar.indices))
-        area_kernels.sum_along(
-            sides.cotangent,
-            sides.normals,
-            self.triangles,
-            directions,
-            self._scalar.place,
-            entries,
-        )
+        parts = sides.cotangent, sides.normals, self.triangles
+        hessian_kernels.sum_along(*parts, directions, self._scalar.place, entries)
         return entries
 
     def hessian(self, sides: TriangleGeometry) -> FloatArray:
         """Return the whole Hessian, a block (3, 3) for each of `pairs` (m, 3, 3)."""
         blocks = np.zeros((len(self._scalar.indices), 3, 3))
-        place = self._scalar.place
-        area_kernels.sum_hessian(sides.cotangent, sides.normals, place, blocks)
+        parts = sides.cotangent, sides.normals, self._scalar.place
+        hessian_kernels.sum_hessian(*parts, blocks)
         return blocks
 
     def pull(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
         """Return a `hessian` (m, 3, 3) times a displacement (n_v, 3)."""
         i, k = self.pairs
         found = np.zeros((self.n_v, 3))
-        area_kernels.pull(blocks, i, k, np.ascontiguousarray(moved), found)
+        hessian_kernels.pull(blocks, i, k, np.ascontiguousarray(moved), found)
         return found
 
     @property
@@ -219,11 +233,9 @@ class Tiling:
     def _dissected(self, largest: int) -> list[IntArray]:
         if len(self.interior) <= largest:
             return [np.arange(len(self.interior))] if len(self.interior) else []
-        graph = Graph(self._scalar.indptr, self._scalar.indices)
-        return [
-            np.searchsorted(self.interior, piece)
-            for piece in dissect(graph, self.loop, self.interior, largest)
-        ]
+        pairs = Graph(self._scalar.indptr, self._scalar.indices)
+        pieces = dissect(pairs, self.loop, self.interior, largest)
+        return [np.searchsorted(self.interior, piece) for piece in pieces]
 
     @cached_property
     def inside(self) -> tuple[IntArray, Elimination]:
@@ -241,8 +253,8 @@ class Tiling:
         """Which pairs couple a vertex inside to the loop, and the places of the two."""
         row, column = self.pairs
         chosen = np.flatnonzero(self.is_inside[row] & ~self.is_inside[column])
-        on_loop = self.numbers[column[chosen]] - len(self.interior)
-        return chosen, self.numbers[row[chosen]], on_loop
+        inside, on_loop = self.numbers[row[chosen]], self.numbers[column[chosen]]
+        return chosen, inside, on_loop - len(self.interior)
 
     @cached_property
     def elimination(self) -> Elimination:
@@ -257,7 +269,7 @@ class Tiling:
 
 @dataclass(frozen=True)
 class _Pattern:
-    """Where the entries of element matrices go in a sparse one; found once, then filled.
+    """Where the entries of element matrices go in a sparse one.
 
     Attributes
     ----------
@@ -282,8 +294,3 @@ class _Pattern:
     def columns(self) -> IntArray:
         """The column of every entry."""
         return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
-
-    def matrix(self, entries: FloatArray) -> csc_array:
-        """Return the matrix with these entries."""
-        n = len(self.indptr) - 1
-        return csc_array((entries, self.indices, self.indptr), shape=(n, n))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,7 +37,25 @@ def jacobian(loop: Loop, x_loop: FloatArray) -> FloatArray:
     return rows.reshape(n, d * n)
 
 
-def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+def _solved(metric: LengthMetric, excess: FloatArray) -> FloatArray:
+    return metric.solve(excess)
+
+
+def _quickly_solved(metric: LengthMetric, excess: FloatArray) -> FloatArray:
+    """Return the same by compiled loops."""
+    from eulerplateau.loop.slide_kernels import solve_lengths  # not for springs
+
+    found = excess.copy()
+    if not solve_lengths(metric.directions, metric.means, found):
+        raise LinAlgError("an edge of the loop has no length, or the loop no width")
+    return found
+
+
+def project_lengths(
+    loop: Loop,
+    x_loop: FloatArray,
+    solved: Callable[[LengthMetric, FloatArray], FloatArray] = _solved,
+) -> FloatArray | None:
     """Return the nearest loop (n_b, d) that keeps its lengths, to rounding; None if lost.
 
     Gauss-Newton in the norm sum_v <s_v> |dx_v|^2. Next to a much longer edge, what corrects
@@ -64,7 +83,7 @@ def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
             return x
         metric = LengthMetric(chords / s[:, None], loop.mean_lengths)
         try:
-            pull = metric.solve(excess)
+            pull = solved(metric, excess)
         except LinAlgError:
             return None
         x = x - metric.force(pull) / mass
@@ -171,6 +190,14 @@ class Lengths:
     ) -> tuple[FloatArray | None, FloatArray]:
         """Return nothing by positions, and tensions / s (n,) by edges."""
         return None, tensions / self.loop.rest_lengths
+
+
+class FilmLengths(Lengths):
+    """The same of a loop whose film needs compiled loops anyway: it makes use of them."""
+
+    def project(self, x: FloatArray) -> FloatArray | None:
+        """Return the nearest loop that keeps its lengths."""
+        return project_lengths(self.loop, x, _quickly_solved)
 
 
 class Unconstrained:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, cross
 from eulerplateau.loop.term import OwnTerm
 
 # Edges in which a resolved loop can turn back on itself.
@@ -200,8 +200,8 @@ def largest_turning(x_loop: FloatArray) -> float:
     x_loop : (n_b, 3) float, the vertices of a closed loop in any unit.
     """
     after = differences(x_loop)
-    before = np.roll(after, 1, axis=0)
-    sine = np.linalg.norm(np.cross(before, after), axis=1)
+    before = np.concatenate([after[-1:], after[:-1]])
+    sine = np.linalg.norm(cross(before, after), axis=1)
     cosine = (before * after).sum(axis=1)
     return float(np.degrees(np.arctan2(sine, cosine).max()))
 

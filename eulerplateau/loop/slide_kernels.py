@@ -160,14 +160,15 @@ def work(one: FloatArray, other: FloatArray, means: FloatArray) -> float:
 def balance(
     directions: FloatArray,
     means: FloatArray,
+    motions: FloatArray,
     force: FloatArray,
     tensions: FloatArray,
     left: FloatArray,
 ) -> float:
     """Fill the tensions (n,) that balance a force (n, d) best, and what they leave of it.
 
-    In the norm of M^-1. Returns the largest of what they add; nan where `solve_lengths`
-    fails.
+    In the norm of M^-1, and not along motions (m, n, d), orthonormal. Returns the largest
+    of what tensions add; nan where `solve_lengths` fails.
     """
     n, d = force.shape
     pull, largest = np.empty(n), 0.0
@@ -188,6 +189,14 @@ def balance(
                 added = before - tensions[v] * directions[v, c]
                 left[v, c] = force[v, c] + added
                 largest = max(largest, abs(added))
+    for k in range(len(motions)):
+        share = 0.0
+        for v in range(n):
+            for c in range(d):
+                share += motions[k, v, c] * left[v, c]
+        for v in range(n):
+            for c in range(d):
+                left[v, c] -= share * means[v] * motions[k, v, c]
     return largest
 
 

@@ -76,8 +76,9 @@ class Splines:
         at_vertices += (self._powers * by_data[:, 3:])[before]
         derivatives = self._solved(at_vertices[:, 1:], adjoint=True)
         by_knots = np.matmul(self._knots.swapaxes(1, 2), derivatives)
-        found: FloatArray = at_vertices[:, 0] + by_knots[:, 1]
-        return found + by_knots[after, 0] + by_knots[before, 2]
+        found: FloatArray = at_vertices[:, 0]
+        found += by_knots[:, 1] + by_knots[after, 0] + by_knots[before, 2]
+        return found
 
     @cached_property
     def _powers(self) -> FloatArray:
@@ -103,7 +104,9 @@ class Splines:
             # Both in units of the edge after the vertex.
             scale = (after / h)[:, None] ** _ORDERS
             by_ends = scale[:, :, None, None] * _JUMPS[:, place]
-            found[:, :, place : place + 2] += by_ends * (h[:, None] ** _POWERS)[:, None, None]
+            found[:, :, place : place + 2] += (
+                by_ends * (h[:, None] ** _POWERS)[:, None, None]
+            )
         return found
 
     @cached_property
@@ -129,7 +132,10 @@ class Splines:
         """
         n = len(self.lengths)
         order = np.empty(n, dtype=np.int64)
-        order[::2], order[1::2] = np.arange((n + 1) // 2), np.arange(n - 1, n - 1 - n // 2, -1)
+        order[::2], order[1::2] = (
+            np.arange((n + 1) // 2),
+            np.arange(n - 1, n - 1 - n // 2, -1),
+        )
         place = np.empty_like(order)
         place[order] = np.arange(n)
         unknown = np.arange(2)

@@ -240,9 +240,10 @@ def _steps(loop: Loop, model: FilmModel, smooth: _Smooth) -> Iterator[tuple[_Sta
 def _smoothed(loop: Loop, forces: FloatArray) -> FloatArray:
     """Return forces (n, 3) smoothed by the mass matrix of linear elements."""
     density = forces / loop.mean_lengths[:, None]
-    across = density + np.concatenate([density[1:], density[:1]])
+    across: FloatArray = density + np.concatenate([density[1:], density[:1]])
     across *= loop.rest_lengths[:, None] / 6
-    return forces / 3 + across + np.concatenate([across[-1:], across[:-1]])
+    across += np.concatenate([across[-1:], across[:-1]])
+    return forces / 3 + across
 
 
 def _mixed(known: list[tuple[FloatArray, FloatArray]], weights: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ function of its loop it is known near one shape at a time (interior.py).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -30,7 +30,14 @@ from eulerplateau.film.normal_moves import normal_heights
 from eulerplateau.film.repair import carry_along, mend_triangles
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
 from eulerplateau.film.with_loop import LoopStiffness
-from eulerplateau.loop import Loop, LoopEnergy, free_motions, inextensible, sliding
+from eulerplateau.loop import (
+    FilmLengths,
+    Loop,
+    LoopEnergy,
+    free_motions,
+    inextensible,
+    sliding,
+)
 from eulerplateau.mesh import Shape
 
 # Tilings whose patterns are kept: of a sweep on a few meshes none is planned twice.
@@ -194,7 +201,8 @@ class AreaOfLoop:
     def energy(self, loop: Loop, load: float) -> LoopEnergy:
         """Return bending plus load * area of the loop; it slides along itself freely."""
         motions = partial(free_motions, loop, slides=True)
-        return inextensible(loop, Area(self.local, load), motions)
+        energy = inextensible(loop, Area(self.local, load), motions)
+        return replace(energy, constraint=FilmLengths(loop))
 
     def with_loop(
         self, x_loop: FloatArray, load: float, loop: LoopStiffness, strip: bool

@@ -1,4 +1,4 @@
-"""The area of a film's triangles with its two derivatives: compiled loops (area.py).
+"""The triangles of a film, their area and its gradient: compiled loops (tiling.py).
 
 Side j of a triangle lies opposite its corner j; of corners i and j, j = i + 1 mod 3 comes
 next. Arrays in, arrays out; what sums into an array expects zeros there.
@@ -43,6 +43,54 @@ def measure(
 
 
 @njit(cache=True)
+def least_sine(edges: FloatArray, areas: FloatArray) -> float:
+    """Return the sine of the smallest angle of triangles (n_t, 3, 3); 0 without an area.
+
+    It is opposite the shortest side, between the two others: see mesh.smallest_angle.
+    """
+    least = 1.0
+    for t in range(edges.shape[0]):
+        e, shortest, product = edges[t], np.inf, 1.0
+        for j in range(3):
+            size = np.sqrt(e[j, 0] ** 2 + e[j, 1] ** 2 + e[j, 2] ** 2)
+            shortest, product = min(shortest, size), product * size
+        sine = 0.0
+        if shortest > 0.0:
+            sine = 2.0 * areas[t] * shortest / product
+        if not sine >= least:
+            least = sine
+    return least
+
+
+@njit(cache=True)
+def are_near(normals: FloatArray, others: FloatArray, cosine: float) -> bool:
+    """Return whether unit normals (n, 3) turn less from others than by that cosine."""
+    for t in range(normals.shape[0]):
+        n, m = normals[t], others[t]
+        if not n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > cosine:
+            return False
+    return True
+
+
+@njit(cache=True)
+def sum_normals(
+    triangles: IntArray, normals: FloatArray, areas: FloatArray, found: FloatArray
+) -> None:
+    """Fill unit normals (n_v, 3) of vertices, the triangles' weighted by their areas."""
+    found[:] = 0.0
+    for t in range(triangles.shape[0]):
+        for j in range(3):
+            for d in range(3):
+                found[triangles[t, j], d] += normals[t, d] * areas[t]
+    for v in range(found.shape[0]):
+        n = found[v]
+        size = np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+        if size > 0.0:
+            for d in range(3):
+                n[d] /= size
+
+
+@njit(cache=True)
 def sum_gradient(
     triangles: IntArray, edges: FloatArray, normals: FloatArray, gradient: FloatArray
 ) -> None:
@@ -54,6 +102,25 @@ def sum_gradient(
             for d in range(3):
                 p, q = (d + 1) % 3, (d + 2) % 3
                 gradient[v, d] += 0.5 * (n[p] * e[q] - n[q] * e[p])
+
+
+@njit(cache=True)
+def stand(
+    x: FloatArray,
+    triangles: IntArray,
+    others: FloatArray,
+    cosine: float,
+    edges: FloatArray,
+    normals: FloatArray,
+    areas: FloatArray,
+    gradient: FloatArray,
+) -> bool:
+    """Do `measure`, `are_near` and `sum_gradient` in one; return what the second says."""
+    measure(x, triangles, edges, normals, areas)
+    if not are_near(normals, others, cosine):
+        return False
+    sum_gradient(triangles, edges, normals, gradient)
+    return True
 
 
 @njit(cache=True)
@@ -97,54 +164,3 @@ def cotangents(edges: FloatArray, areas: FloatArray, found: FloatArray) -> None:
                 for d in range(3):
                     dot += edges[t, i, d] * edges[t, j, d]
                 found[t, i, j] = dot / (4.0 * areas[t]) if areas[t] > 0.0 else 0.0
-
-
-@njit(cache=True)
-def sum_hessian(
-    cotangent: FloatArray, normals: FloatArray, place: IntArray, blocks: FloatArray
-) -> None:
-    """Add d2A/dx_i dx_j of every triangle to `blocks` (m, 3, 3), at `place` (n_t, 3, 3)."""
-    for t in range(cotangent.shape[0]):
-        n = normals[t]
-        for i in range(3):
-            for j in range(3):
-                block = blocks[place[t, i, j]]
-                # 1 where j follows two after i, -1 where one after, 0 for i = j.
-                turn = 0.5 * (((j - i) % 3 == 2) * 1.0 - ((j - i) % 3 == 1) * 1.0)
-                for d in range(3):
-                    p, q = (d + 1) % 3, (d + 2) % 3
-                    for e in range(3):
-                        block[d, e] += cotangent[t, i, j] * n[d] * n[e]
-                    # Row d of [n]_x: -n_q in column p, n_p in column q.
-                    block[d, p] -= turn * n[q]
-                    block[d, q] += turn * n[p]
-
-
-@njit(cache=True)
-def sum_along(
-    cotangent: FloatArray,
-    normals: FloatArray,
-    triangles: IntArray,
-    directions: FloatArray,
-    place: IntArray,
-    entries: FloatArray,
-) -> None:
-    """Add u_i . d2A/dx_i dx_j u_j to `entries`, at `place` (n_t, 3, 3).
-
-    directions : (n_v, 3), u.
-    """
-    for t in range(triangles.shape[0]):
-        n = normals[t]
-        for i in range(3):
-            u = directions[triangles[t, i]]
-            rise = n[0] * u[0] + n[1] * u[1] + n[2] * u[2]
-            for j in range(3):
-                w = directions[triangles[t, j]]
-                value = (
-                    cotangent[t, i, j] * rise * (n[0] * w[0] + n[1] * w[1] + n[2] * w[2])
-                )
-                turn = 0.5 * (((j - i) % 3 == 2) * 1.0 - ((j - i) % 3 == 1) * 1.0)
-                for d in range(3):
-                    p, q = (d + 1) % 3, (d + 2) % 3
-                    value += turn * u[d] * (n[p] * w[q] - n[q] * w[p])
-                entries[place[t, i, j]] += value

@@ -58,16 +58,11 @@ class Condensation:
 
         Those are the rows 0 ... n_i - 1.
         """
-        from eulerplateau.film.solve_kernels import solve_fronts
+        from eulerplateau.film.solve_kernels import solve_rows
 
         n_i = len(forces)
-        order = self._order[:n_i]
-        columns = np.zeros((forces.size // n_i, len(self._order)))
-        columns[:, :n_i] = forces.reshape(n_i, -1)[order].T
-        solve_fronts(*self._parts.packed, columns)
-        x = np.empty((n_i, len(columns)))
-        x[order] = columns[:, :n_i].T
-        return x.reshape(forces.shape)
+        rows = np.ascontiguousarray(forces).reshape(n_i, -1)
+        return solve_rows(*self._parts.packed, self._order, rows).reshape(forces.shape)
 
     def carry(self, forces: FloatArray) -> FloatArray:
         """Return f_b - L_bi L_ii^-1 f_i (n_b, m): what forces (n, m) come to on the loop.
@@ -187,11 +182,12 @@ def _in_parts(
 ) -> Condensation:
     from scipy.sparse import csr_array
 
-    from eulerplateau.film.dissection import dissect
+    from eulerplateau.film.dissection import Graph, dissect
     from eulerplateau.film.elimination import plan
 
     n = len(loop) + len(interior)
     rows = csr_array((values, (row, column)), shape=(n, n))
-    pieces = dissect(rows, loop, interior)
+    graph = Graph(rows.indptr.astype(np.int64), rows.indices.astype(np.int64))
+    pieces = dissect(graph, loop, interior)
     row = np.repeat(np.arange(n), np.diff(rows.indptr))
     return factorise(plan(row, rows.indices, pieces, loop), rows.data)

@@ -6,8 +6,9 @@ factorisation of a planar graph's matrix fills in as little as it can, n log n.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
-from scipy.sparse import csr_array
 
 from eulerplateau.arrays import IntArray
 from eulerplateau.compiling import njit
@@ -18,10 +19,27 @@ LARGEST = 128
 _LANDMARKS = 8
 
 
+class Graph(NamedTuple):
+    """Which vertices have edges in common: those of v are indices[indptr[v]:indptr[v + 1]].
+
+    One may be listed more than once, and be v itself.
+    """
+
+    indptr: IntArray
+    indices: IntArray
+
+
+def graph_of(row: IntArray, column: IntArray, n: int) -> Graph:
+    """Return the graph of n vertices with the edges from row (m,) to column (m,)."""
+    order = np.argsort(row, kind="stable")
+    indptr = np.searchsorted(row[order], np.arange(n + 1))
+    return Graph(indptr, column[order])
+
+
 def dissect(
-    graph: csr_array, around: IntArray, inside: IntArray, largest: int = LARGEST
+    graph: Graph, around: IntArray, inside: IntArray, largest: int = LARGEST
 ) -> list[IntArray]:
-    """Cut the vertices `inside` a graph (n, n) into parts, to be eliminated in this order.
+    """Cut the vertices `inside` a graph into parts, to be eliminated in this order.
 
     Vertices of two parts are neighbours only if one of the parts separates the other from
     the rest. Distances are counted in edges, from landmarks among the vertices `around`:
@@ -67,12 +85,13 @@ def _sides(distance: IntArray, first: IntArray, size: IntArray) -> IntArray:
     return side
 
 
-def _edges_away(graph: csr_array, sources: IntArray) -> IntArray:
+def _edges_away(graph: Graph, sources: IntArray) -> IntArray:
     """Return the number of edges (m, n) between each of m sources and every vertex.
 
     It is n where none leads there.
     """
-    steps = np.full((len(sources), graph.shape[0]), graph.shape[0], dtype=np.int64)
+    n = len(graph.indptr) - 1
+    steps = np.full((len(sources), n), n, dtype=np.int64)
     _count_edges(graph.indptr, graph.indices, sources, steps)
     return steps
 

@@ -10,6 +10,7 @@ is found once and used for every matrix with that pattern.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class _Front:
     places: IntArray
     left: list[tuple[int, IntArray]]
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Rows of the block."""
         return self.stop - self.start + len(self.around)
@@ -61,6 +62,23 @@ class Elimination:
 
     order: IntArray
     fronts: tuple[_Front, ...]
+
+    @cached_property
+    def filled(self) -> list[tuple[int, _Front]]:
+        """The fronts that have rows of their own, by their numbers."""
+        return [
+            (k, front) for k, front in enumerate(self.fronts) if front.stop > front.start
+        ]
+
+    @cached_property
+    def hung(self) -> tuple[IntArray, IntArray, IntArray]:
+        """Where each of these starts, and by a pointer the rows it hangs on, end to end."""
+        fronts = [front for _, front in self.filled]
+        return (
+            np.array([front.start for front in fronts]),
+            np.cumsum([0, *(len(front.around) for front in fronts)]),
+            np.concatenate([front.around for front in fronts]),
+        )
 
 
 def plan(
@@ -112,10 +130,20 @@ def summed(place: IntArray, values: FloatArray, n: int) -> FloatArray:
 
     Of values (m, d) each column apart, (n, d).
     """
-    if values.ndim == 2:
-        return np.stack([summed(place, column, n) for column in values.T], axis=1)
-    # float64 even where nothing is added.
-    return np.bincount(place, values, minlength=n).astype(np.float64, copy=False)
+    if values.ndim == 1:
+        # float64 even where nothing is added.
+        return np.bincount(place, values, minlength=n).astype(np.float64, copy=False)
+    total = np.zeros((n, values.shape[1]))
+    add_rows(place, np.ascontiguousarray(values), total)
+    return total
+
+
+@njit(cache=True)
+def add_rows(place: IntArray, values: FloatArray, total: FloatArray) -> None:
+    """Add rows of values (m, d) to rows `place` of `total` (n, d)."""
+    for m in range(place.shape[0]):
+        for d in range(values.shape[1]):
+            total[place[m], d] += values[m, d]
 
 
 @njit(cache=True)

@@ -43,7 +43,7 @@ def laid_anew(tiling: Tiling, x: FloatArray) -> tuple[Tiling, FloatArray]:
     """
     blocks = np.broadcast_to(_EQUAL, (len(tiling.triangles), 3, 3))
     try:
-        even = factorise(tiling.elimination, tiling.filled(blocks).data)
+        even = factorise(tiling.elimination, tiling.filled(blocks))
     except LinAlgError:  # vertices inside that nothing joins to the loop
         return tiling, x
     flat = even.extend(x[tiling.loop])

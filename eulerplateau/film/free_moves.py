@@ -150,7 +150,7 @@ def at_rest(free: FreeInterior, x: FloatArray) -> FloatArray:
 
 def is_rest(sides: TriangleGeometry, error: float, before: float, full: bool) -> bool:
     """Whether what is left of forces, after a full step or not, is rounding."""
-    scale = float(np.abs(sides.edges).max())
+    scale = sides.scale
     stuck = full and error < 1e-9 * scale and error > 0.25 * before
     return error <= ROUNDING * scale or stuck
 

@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.film import hessian_kernels
 from eulerplateau.film.condensation import Condensation, factorise
-from eulerplateau.film.elimination import summed
 from eulerplateau.film.tiling import Tiling, TriangleGeometry
 
 
@@ -37,8 +37,8 @@ class Follower:
         pairs, inside, on_loop = tiling.coupled
         values = np.empty((tiling.n_v, moved.shape[1]))
         values[tiling.loop] = moved
-        pull = self.entries[pairs, None] * moved[on_loop]
-        pull = summed(inside, pull, len(tiling.interior))
+        pull = np.zeros((len(tiling.interior), moved.shape[1]))
+        hessian_kernels.couple(self.entries, pairs, inside, on_loop, moved, pull)
         values[tiling.interior] = -self.inverse.solve(pull)
         return values
 
@@ -47,8 +47,9 @@ class Follower:
         tiling = self.tiling
         pairs, inside, on_loop = tiling.coupled
         held = self.inverse.solve(forces[tiling.interior])
-        pull = self.entries[pairs, None] * held[inside]
-        carried: FloatArray = forces[tiling.loop] - summed(on_loop, pull, len(tiling.loop))
+        pull = np.zeros((len(tiling.loop), forces.shape[1]))
+        hessian_kernels.couple(self.entries, pairs, on_loop, inside, held, pull)
+        carried: FloatArray = forces[tiling.loop] - pull
         return carried
 
     @cached_property
@@ -59,7 +60,7 @@ class Follower:
 
 def follower(tiling: Tiling, sides: TriangleGeometry) -> Follower:
     """Return what follows the loop on a shape; LinAlgError where that is too degenerate."""
-    entries = tiling.cotangent_laplacian(sides).data
+    entries = tiling.cotangent_laplacian(sides)
     pairs, elimination = tiling.inside
     return Follower(tiling, entries, factorise(elimination, entries[pairs]))
 

@@ -34,7 +34,7 @@ class HeightsFilm(LocalFilm):
 
     def is_central(self, sides: TriangleGeometry) -> bool:
         """Return whether the film's normals are those at which it was made."""
-        return self.tilt(sides) > _NO_TILT
+        return self.upright(sides, _NO_TILT)
 
     def stiffness(self, sides: TriangleGeometry) -> Condensation:
         """Return the factorised interior of a film."""
@@ -47,7 +47,7 @@ class HeightsFilm(LocalFilm):
         for _ in range(_STEPS):
             force = variations.work(state.gradient)
             before, error = error, float(np.abs(force).max(initial=0.0))
-            if is_rest(state.sides, error, before, fresh):
+            if is_rest(self.sides, error, before, fresh):
                 return state
             fresh = inverse is None or error > _SLOW * before
             if inverse is None or fresh:

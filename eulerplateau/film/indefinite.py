@@ -17,7 +17,7 @@ from scipy.linalg.lapack import dsytrf, dsytrs
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.compiling import njit
 from eulerplateau.film.elimination import Elimination
-from eulerplateau.film.solve_kernels import solve_symmetric_fronts
+from eulerplateau.film.solve_kernels import solve_symmetric_rows
 
 # Columns of LAPACK's blocks.
 _COLUMNS = 32
@@ -33,11 +33,7 @@ class IndefiniteFactor:
 
     def solve(self, rhs: FloatArray) -> FloatArray:
         """Return the solution (n, m) for right-hand sides (n, m)."""
-        columns = np.ascontiguousarray(rhs[self._order].T)
-        solve_symmetric_fronts(*self._packed, columns)
-        x = np.empty((len(self._order), len(columns)))
-        x[self._order] = columns.T
-        return x
+        return solve_symmetric_rows(*self._packed, self._order, rhs)
 
 
 def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> IndefiniteFactor:
@@ -45,38 +41,28 @@ def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> Indef
 
     Raises LinAlgError if a pivot vanishes. The caller sees to it that BLAS has one thread.
     """
-    # Of a front that keeps nothing there is nothing.
-    fronts = [front for front in elimination.fronts if front.stop > front.start]
-    sizes = [(front.stop - front.start) * front.size for front in fronts]
     # Factors and responses F_11^-1 F_12 at once where they are read: copies are as large.
+    sizes = ((front.stop - front.start) * front.size for _, front in elimination.filled)
     data, filled = np.empty(sum(sizes)), 0
     all_pivots: list[IntArray] = []
     remainders: dict[int, FloatArray] = {}
     negative = 0
-    for number, front in enumerate(elimination.fronts):
+    for number, front in elimination.filled:
         own = front.stop - front.start
-        if not own:
-            continue
         block = front.assemble(entries, remainders)
         factor, pivots, failed = dsytrf(block[:own, :own], lower=1, lwork=_COLUMNS * own)
         if failed:
             raise LinAlgError("a pivot vanishes")
         negative += negative_pivots(factor, pivots)
-        below = block[own:, :own]
         here = data[filled : (filled := filled + own * front.size)]
         here[: own * own] = factor.ravel("F")
-        if len(below):
+        if own < front.size:
+            below = block[own:, :own]
             response = dsytrs(factor, pivots, below.T, lower=1)[0]
             remainders[number] = dgemm(-1.0, below, response, 1.0, block[own:, own:])
             here[own * own :] = response.ravel("F")
         all_pivots.append(pivots)
-    packed = (
-        np.array([front.start for front in fronts]),
-        np.cumsum([0, *(len(front.around) for front in fronts)]),
-        np.concatenate([front.around for front in fronts]),
-        np.concatenate(all_pivots),
-        data,
-    )
+    packed = (*elimination.hung, np.concatenate(all_pivots), data)
     return IndefiniteFactor(negative, elimination.order, packed)
 
 

@@ -34,6 +34,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.film import area_kernels
 from eulerplateau.film.condensation import Condensation
 from eulerplateau.film.harmonic import Follower
 from eulerplateau.film.normal_moves import InteriorUnknowns
@@ -154,8 +155,11 @@ class LocalFilm(ABC):
     normals: FloatArray
     follower: Follower
     variations: InteriorUnknowns
-    # The last films asked for: a solver comes back to them for force, energy and Hessian.
-    _recent: list[FilmAtRest] = field(default_factory=list, init=False, repr=False)
+    # The last films asked for, by their loops: a solver comes back to them for force,
+    # energy and Hessian.
+    _recent: list[tuple[FloatArray, FilmAtRest]] = field(
+        default_factory=list, init=False, repr=False
+    )
     # The last interior that was factorised on the way to rest, kept for films near by.
     _inverse: list[Condensation] = field(default_factory=list, init=False, repr=False)
 
@@ -184,16 +188,16 @@ class LocalFilm(ABC):
         """Return g_b + G^T g_i (n_b, 3): what a gradient (n_v, 3) comes to on the loop."""
         return self.follower.carry(gradient)
 
-    def tilt(self, sides: TriangleGeometry) -> float:
-        """Return the smallest cosine between a film's normals and the reference's."""
+    def upright(self, sides: TriangleGeometry, cosine: float) -> bool:
+        """Return whether all a film's normals are closer than that to the reference's."""
         now = self.tiling.vertex_normals(sides)[self.tiling.interior]
-        return float((now * self.normals).sum(axis=1).min(initial=1.0))
+        return area_kernels.are_near(now, self.normals, cosine)
 
     def holds(self, sides: TriangleGeometry) -> bool:
         """Return whether a film is so near that neither it nor triangles turned far."""
         angle = sides.smallest_angle
         thin = angle < LIMITS.thin and angle < LIMITS.thinned * self.sides.smallest_angle
-        return not thin and self.unfolded(sides) and self.tilt(sides) > _TILT
+        return not thin and self.unfolded(sides) and self.upright(sides, _TILT)
 
     def relax(self, x_loop: FloatArray) -> FilmAtRest:
         """Return the film of least area on a loop (n_b, 3).
@@ -201,37 +205,40 @@ class LocalFilm(ABC):
         Raises LinAlgError if there is none near the reference: it has torn or folded.
         """
         loop = self.tiling.loop
-        for known in self._recent:
-            if np.array_equal(known.x[loop], x_loop):
+        for number, (its_loop, known) in enumerate(self._recent):
+            if its_loop is x_loop:
+                return known
+            if np.array_equal(its_loop, x_loop):
+                self._recent[number] = (x_loop, known)
                 return known
         base = self.x + self.follow(x_loop - self.x[loop])
         base[loop] = x_loop
         found = self._settled(base, self._begun(base))
-        self._recent[:] = [found, *self._recent[:1]]
+        self._recent[:] = [(x_loop, found), *self._recent[:1]]
         return found
 
     def rests_at(self, x: FloatArray) -> bool:
         """Return whether these very vertices are those of a film asked for, not tilted."""
-        return any(known.x is x and known.central for known in self._recent)
+        return any(known.x is x and known.central for _, known in self._recent)
 
     def begin_at(self, x: FloatArray, u: FloatArray) -> None:
         """Forget the films asked for but one at rest, x (n_v, 3): the next begins there."""
         sides = self.tiling.sides(x)
         gradient = self.tiling.gradient(sides)
-        self._recent[:] = [FilmAtRest(self, x, u, sides, gradient)]
+        found = FilmAtRest(self, x, u, sides, gradient)
+        self._recent[:] = [(x[self.tiling.loop], found)]
 
     def _at(self, base: FloatArray, u: FloatArray) -> FilmAtRest | None:
         """Return the film displaced by u from a mesh (n_v, 3); None if it folds over."""
         x = base.copy()
         x[self.tiling.interior] += self.variations.displaced(u)
-        sides = self.tiling.sides(x)
-        if not self.unfolded(sides):
-            return None
-        return FilmAtRest(self, x, u, sides, self.tiling.gradient(sides))
+        before = self.sides.normals
+        standing = self.tiling.standing(x, before, LIMITS.folded)
+        return None if standing is None else FilmAtRest(self, x, u, *standing)
 
     def _begun(self, base: FloatArray) -> FilmAtRest:
         """Return the film to begin with: the last, and its response as far as it goes."""
-        last = self._recent[0] if self._recent else None
+        last = self._recent[0][1] if self._recent else None
         u = np.zeros(self.variations.size) if last is None else last.u
         inverse = self._known()
         if last is not None and inverse is not None:
@@ -254,10 +261,10 @@ class LocalFilm(ABC):
 
     def _known(self) -> Condensation | None:
         """Return a factorised interior of the last film, or of one near it, if there is."""
-        own = self._recent[0].factorised if self._recent else None
+        own = self._recent[0][1].factorised if self._recent else None
         return self._inverse[0] if own is None and self._inverse else own
 
     def unfolded(self, sides: TriangleGeometry) -> bool:
         """Return whether every triangle shows the side that the reference shows."""
-        turned = (sides.normals * self.sides.normals).sum(axis=1)
-        return bool((sides.areas > 0).all() and (turned > LIMITS.folded).all())
+        # A triangle without area has no normal: the cosine is 0.
+        return area_kernels.are_near(sides.normals, self.sides.normals, LIMITS.folded)

@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.film import hessian_kernels
 from eulerplateau.film.condensation import Condensation, factorise
 from eulerplateau.film.elimination import Elimination, plan, summed
 from eulerplateau.film.indefinite import IndefiniteFactor, factorise_indefinite
@@ -92,17 +93,22 @@ class NormalHeights:
 
     def displaced(self, u: FloatArray) -> FloatArray:
         """Return n u (n_i, 3)."""
-        return u[:, None] * self.normals[self.tiling.interior]
+        return u[:, None] * self._inside
 
     def work(self, gradient: FloatArray) -> FloatArray:
         """Return n . g (n_i,)."""
-        inside = self.tiling.interior
-        along: FloatArray = (gradient[inside] * self.normals[inside]).sum(axis=1)
+        inside: FloatArray = gradient[self.tiling.interior]
+        along: FloatArray = np.einsum("ic,ic->i", inside, self._inside)
         return along
+
+    @cached_property
+    def _inside(self) -> FloatArray:
+        """The normals inside (n_i, 3)."""
+        return self.normals[self.tiling.interior]
 
     def stiffness(self, sides: TriangleGeometry) -> Condensation:
         """Factorise n . H n (n_i, n_i); LinAlgError unless it is positive definite."""
-        entries = self.tiling.normal_hessian(sides, self.normals).data
+        entries = self.tiling.normal_hessian(sides, self.normals)
         pairs, elimination = self.tiling.inside
         return factorise(elimination, entries[pairs])
 
@@ -129,12 +135,14 @@ class NormalHeights:
     def _entries(self, blocks: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the Hessian's entries, flat, in the order of `_chosen`."""
         heights, coupling, loop = self._chosen
+        up, across = np.empty(len(heights)), np.empty((len(coupling), 3))
+        kept = np.empty((len(loop), 3, 3))
         i, k = self.tiling.pairs
-        along = self._along(blocks)
-        up = np.einsum("pc,pc->p", along[heights], self.normals[k[heights]])
-        across = self.weight[k[coupling], None] * along[coupling]
-        weight = self.weight[i[loop]] * self.weight[k[loop]]
-        kept = weight[:, None, None] * blocks[loop]
+        hessian_kernels.rise(blocks, heights, i, k, self.normals, up)
+        hessian_kernels.rise_and_follow(
+            blocks, coupling, i, k, self.normals, self.weight, across
+        )
+        hessian_kernels.follow(blocks, loop, i, k, self.weight, kept)
         return up, across.ravel(), kept.ravel()
 
     def followed(self, moved: FloatArray) -> FloatArray:
@@ -144,13 +152,6 @@ class NormalHeights:
     def carried(self, forces: FloatArray) -> FloatArray:
         """Return the sums of w f (n_b, 3) over all that follow a vertex."""
         return summed(self.leader, self.weight[:, None] * forces, len(self.tiling.loop))
-
-    def _along(self, blocks: FloatArray) -> FloatArray:
-        """Return n_i . H_ik (m, 3)."""
-        along: FloatArray = np.einsum(
-            "pc,pcd->pd", self.normals[self.tiling.pairs[0]], blocks
-        )
-        return along
 
     @cached_property
     def _chosen(self) -> tuple[IntArray, IntArray, IntArray]:

@@ -74,6 +74,34 @@ def solve_fronts(
                 own[j] = (own[j] - pull) / column[j]
 
 
+@njit(cache=True, error_model="numpy")
+def solve_rows(
+    starts: IntArray,
+    stops: IntArray,
+    pointer: IntArray,
+    around: IntArray,
+    first: IntArray,
+    data: FloatArray,
+    order: IntArray,
+    rhs: FloatArray,
+) -> FloatArray:
+    """Return the same of right-hand sides (n, m) of the first n rows, as rows (n, m).
+
+    order : (N,), the place of each row in the factor
+    """
+    n, m = rhs.shape
+    columns = np.zeros((m, len(order)))
+    for k in range(n):
+        for c in range(m):
+            columns[c, k] = rhs[order[k], c]
+    solve_fronts(starts, stops, pointer, around, first, data, columns)
+    found = np.empty((n, m))
+    for k in range(n):
+        for c in range(m):
+            found[order[k], c] = columns[c, k]
+    return found
+
+
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
 def solve_symmetric_fronts(
     starts: IntArray,
@@ -112,6 +140,30 @@ def solve_symmetric_fronts(
                 for j in range(n):
                     own[j] -= response[j] * value
             at -= n * n
+
+
+@njit(cache=True, error_model="numpy")
+def solve_symmetric_rows(
+    starts: IntArray,
+    pointer: IntArray,
+    around: IntArray,
+    pivots: IntArray,
+    data: FloatArray,
+    order: IntArray,
+    rhs: FloatArray,
+) -> FloatArray:
+    """Return the same of right-hand sides as rows (N, m), whose places are `order` (N,)."""
+    n, m = rhs.shape
+    columns = np.empty((m, n))
+    for k in range(n):
+        for c in range(m):
+            columns[c, k] = rhs[order[k], c]
+    solve_symmetric_fronts(starts, pointer, around, pivots, data, columns)
+    found = np.empty((n, m))
+    for k in range(n):
+        for c in range(m):
+            found[order[k], c] = columns[c, k]
+    return found
 
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})

@@ -19,10 +19,10 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
-from eulerplateau.film import area_kernels
-from eulerplateau.film.dissection import LARGEST, dissect
+from eulerplateau.film import area_kernels, hessian_kernels
+from eulerplateau.film.dissection import LARGEST, Graph, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
-from eulerplateau.mesh import neighbours, smallest_angle, unit
+from eulerplateau.mesh import neighbours
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,15 @@ class TriangleGeometry:
     normals: FloatArray
     areas: FloatArray
 
-    @property
+    @cached_property
     def smallest_angle(self) -> float:
         """The smallest angle of all triangles, degrees."""
-        return smallest_angle(self.edges, self.areas)
+        return float(np.degrees(np.arcsin(area_kernels.least_sine(self.edges, self.areas))))
+
+    @cached_property
+    def scale(self) -> float:
+        """The largest part of a side along an axis."""
+        return max(float(self.edges.max()), -float(self.edges.min()))
 
     @cached_property
     def cotangent(self) -> FloatArray:
@@ -125,12 +130,26 @@ class Tiling:
 
     def sides(self, x: FloatArray) -> TriangleGeometry:
         """Return the triangles of the shape x (n_v, 3)."""
+        arrays = self._unmeasured()
+        area_kernels.measure(np.ascontiguousarray(x), self.triangles, *arrays)
+        return TriangleGeometry(*arrays)
+
+    def standing(
+        self, x: FloatArray, normals: FloatArray, cosine: float
+    ) -> tuple[TriangleGeometry, FloatArray] | None:
+        """Return the triangles of a shape x (n_v, 3) and the gradient of its area (n_v, 3).
+
+        None where one turns from these normals (n_t, 3) by that cosine, or has no area.
+        """
+        arrays, gradient = self._unmeasured(), np.zeros_like(x)
+        known = x, self.triangles, normals, cosine
+        if not area_kernels.stand(*known, *arrays, gradient):
+            return None
+        return TriangleGeometry(*arrays), gradient
+
+    def _unmeasured(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         n = len(self.triangles)
-        sides = TriangleGeometry(np.empty((n, 3, 3)), np.empty((n, 3)), np.empty(n))
-        area_kernels.measure(
-            np.ascontiguousarray(x), self.triangles, sides.edges, sides.normals, sides.areas
-        )
-        return sides
+        return np.empty((n, 3, 3)), np.empty((n, 3)), np.empty(n)
 
     def gradient(self, sides: TriangleGeometry) -> FloatArray:
         """Return the gradient of the area (n_v, 3)."""
@@ -149,42 +168,47 @@ class Tiling:
 
     def vertex_normals(self, sides: TriangleGeometry) -> FloatArray:
         """Return unit normals (n_v, 3), the triangles' weighted by their areas."""
-        weighted = np.repeat((sides.normals * sides.areas[:, None])[:, None], 3, axis=1)
-        total = self.gather(weighted)
-        return unit(total)
+        found = np.empty((self.n_v, 3))
+        area_kernels.sum_normals(self.triangles, sides.normals, sides.areas, found)
+        return found
 
-    def cotangent_laplacian(self, sides: TriangleGeometry) -> csc_array:
-        """Return L (n_v, n_v) with area gradient = L x; the film at rest is L x = 0."""
+    def cotangent_laplacian(self, sides: TriangleGeometry) -> FloatArray:
+        """Return L with area gradient = L x, an entry for each of `pairs` (m,).
+
+        The film at rest is L x = 0.
+        """
         return self.filled(sides.cotangent)
 
-    def filled(self, blocks: FloatArray) -> csc_array:
-        """Return the matrix (n_v, n_v) that couples corners by blocks (n_t, 3, 3)."""
-        return self._scalar.fill(blocks)
+    def filled(self, blocks: FloatArray) -> FloatArray:
+        """Return what couples corners by blocks (n_t, 3, 3), by `pairs` (m,)."""
+        place = self._scalar.place.ravel()
+        return summed(place, blocks.ravel(), len(self._scalar.indices))
 
-    def normal_hessian(self, sides: TriangleGeometry, directions: FloatArray) -> csc_array:
-        """Return the Hessian (n_v, n_v) for displacements along `directions` (n_v, 3)."""
-        entries = self._scalar.empty()
-        area_kernels.sum_along(
-            sides.cotangent,
-            sides.normals,
-            self.triangles,
-            directions,
-            self._scalar.place,
-            entries,
-        )
-        return self._scalar.matrix(entries)
+    def matrix(self, entries: FloatArray) -> csc_array:
+        """Return the matrix (n_v, n_v) with these entries (m,), one for each of `pairs`."""
+        data = entries, self._scalar.indices, self._scalar.indptr
+        return csc_array(data, shape=2 * (self.n_v,))
+
+    def normal_hessian(self, sides: TriangleGeometry, directions: FloatArray) -> FloatArray:
+        """Return the Hessian for displacements along `directions` (n_v, 3), by `pairs`."""
+        entries = np.zeros(len(self._scalar.indices))
+        parts = sides.cotangent, sides.normals, self.triangles
+        hessian_kernels.sum_along(*parts, directions, self._scalar.place, entries)
+        return entries
 
     def hessian(self, sides: TriangleGeometry) -> FloatArray:
         """Return the whole Hessian, a block (3, 3) for each of `pairs` (m, 3, 3)."""
         blocks = np.zeros((len(self._scalar.indices), 3, 3))
-        place = self._scalar.place
-        area_kernels.sum_hessian(sides.cotangent, sides.normals, place, blocks)
+        parts = sides.cotangent, sides.normals, self._scalar.place
+        hessian_kernels.sum_hessian(*parts, blocks)
         return blocks
 
     def pull(self, blocks: FloatArray, moved: FloatArray) -> FloatArray:
         """Return a `hessian` (m, 3, 3) times a displacement (n_v, 3)."""
         i, k = self.pairs
-        return summed(i, np.einsum("pcd,pd->pc", blocks, moved[k]), self.n_v)
+        found = np.zeros((self.n_v, 3))
+        hessian_kernels.pull(blocks, i, k, np.ascontiguousarray(moved), found)
+        return found
 
     @property
     def pairs(self) -> tuple[IntArray, IntArray]:
@@ -207,11 +231,11 @@ class Tiling:
         return self._dissected(LARGEST // 3)
 
     def _dissected(self, largest: int) -> list[IntArray]:
-        graph = self._scalar.matrix(np.ones(len(self._scalar.indices))).tocsr()
-        return [
-            np.searchsorted(self.interior, piece)
-            for piece in dissect(graph, self.loop, self.interior, largest)
-        ]
+        if len(self.interior) <= largest:
+            return [np.arange(len(self.interior))] if len(self.interior) else []
+        pairs = Graph(self._scalar.indptr, self._scalar.indices)
+        pieces = dissect(pairs, self.loop, self.interior, largest)
+        return [np.searchsorted(self.interior, piece) for piece in pieces]
 
     @cached_property
     def inside(self) -> tuple[IntArray, Elimination]:
@@ -229,8 +253,8 @@ class Tiling:
         """Which pairs couple a vertex inside to the loop, and the places of the two."""
         row, column = self.pairs
         chosen = np.flatnonzero(self.is_inside[row] & ~self.is_inside[column])
-        on_loop = self.numbers[column[chosen]] - len(self.interior)
-        return chosen, self.numbers[row[chosen]], on_loop
+        inside, on_loop = self.numbers[row[chosen]], self.numbers[column[chosen]]
+        return chosen, inside, on_loop - len(self.interior)
 
     @cached_property
     def elimination(self) -> Elimination:
@@ -245,7 +269,7 @@ class Tiling:
 
 @dataclass(frozen=True)
 class _Pattern:
-    """Where the entries of element matrices go in a sparse one; found once, then filled.
+    """Where the entries of element matrices go in a sparse one.
 
     Attributes
     ----------
@@ -270,17 +294,3 @@ class _Pattern:
     def columns(self) -> IntArray:
         """The column of every entry."""
         return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
-
-    def empty(self) -> FloatArray:
-        """Return zeros for the entries of a matrix with this pattern."""
-        return np.zeros(len(self.indices))
-
-    def matrix(self, entries: FloatArray) -> csc_array:
-        """Return the matrix with these entries."""
-        n = len(self.indptr) - 1
-        return csc_array((entries, self.indices, self.indptr), shape=(n, n))
-
-    def fill(self, blocks: FloatArray) -> csc_array:
-        """Return the matrix with the element matrices (n_t, 3, 3) summed into it."""
-        place = self.place.ravel()
-        return self.matrix(summed(place, blocks.ravel(), len(self.indices)))

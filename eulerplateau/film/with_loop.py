@@ -11,10 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film.dissection import dissect
+from eulerplateau.film.dissection import dissect, graph_of
 from eulerplateau.film.elimination import Elimination, plan
 
 _AXES = np.arange(3)
@@ -72,19 +71,19 @@ class LoopStiffness:
 
         def add(one: IntArray, other: IntArray) -> None:
             row.append(one.ravel())
-            column.append(np.broadcast_to(other, one.shape).ravel())
+            column.append(other.ravel())
 
         add(at, at)
         for step in range(1, _REACH + 1):
             add(at, after := np.roll(at, -step, axis=0))
             add(after, at)
-        tension = first + 3 * n + v[:, None] + 0 * _AXES
-        for vertex in (at, np.roll(at, -1, axis=0)):
-            add(tension, vertex)
-            add(vertex, tension)
+        tension = first + 3 * n + np.repeat(v[:, None], 3, axis=1)
+        for step in range(2):
+            add(tension, after := np.roll(at, -step, axis=0))
+            add(after, tension)
         last = first + 4 * n
         for number in range(self.held.shape[1]):
-            add(at, np.array(last + number))
+            add(at, np.full_like(at, last + number))
         springs = last + self.held.shape[1] + np.arange(3 * len(self.pinned))
         add(at[self.pinned].ravel(), springs)
         add(springs, springs)
@@ -137,7 +136,7 @@ class FilmWithLoop:
         reach = [np.roll(loop, -step) for step in range(1, _REACH + 1)]
         row = np.concatenate([self._node(self.row), *(_REACH * [loop]), *reach])
         column = np.concatenate([self._node(self.column), *reach, *(_REACH * [loop])])
-        graph = csr_array((np.ones(len(row)), (row, column)), shape=2 * (n_i + n_b,))
+        graph = graph_of(row, column, n_i + n_b)
         pieces = dissect(graph, loop, np.arange(n_i + n_b), _LARGEST)
         owner = np.empty(n_i + n_b, dtype=np.int64)
         for number, piece in enumerate(pieces):

@@ -10,6 +10,7 @@ from .free_bending import FreeBending as FreeBending
 from .gaps import NEGATIVE as NEGATIVE, NO_GAPS as NO_GAPS, Gaps as Gaps
 from .held_gaps import HeldGaps as HeldGaps, with_gaps_held as with_gaps_held
 from .lengths import (
+    FilmLengths as FilmLengths,
     Lengths as Lengths,
     Unconstrained as Unconstrained,
     close_with_lengths as close_with_lengths,
@@ -27,6 +28,7 @@ from .motions import (
     RIGID_MOTIONS as RIGID_MOTIONS,
     TURNS as TURNS,
     free_motions as free_motions,
+    orthonormal_motions as orthonormal_motions,
     remove_sliding as remove_sliding,
     rigid_motions as rigid_motions,
     sliding as sliding,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.loop import Loop
-from eulerplateau.loop.turns import EdgeTurns, edge_turns, length_metric
+from eulerplateau.loop.turns import EdgeTurns, LengthMetric, edge_turns
 
 # Gauss-Newton converges quadratically: a handful of steps from a nearby shape.
 _PROJECTION_STEPS = 30
@@ -36,7 +37,25 @@ def jacobian(loop: Loop, x_loop: FloatArray) -> FloatArray:
     return rows.reshape(n, d * n)
 
 
-def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+def _solved(metric: LengthMetric, excess: FloatArray) -> FloatArray:
+    return metric.solve(excess)
+
+
+def _quickly_solved(metric: LengthMetric, excess: FloatArray) -> FloatArray:
+    """Return the same by compiled loops."""
+    from eulerplateau.loop.slide_kernels import solve_lengths  # not for springs
+
+    found = excess.copy()
+    if not solve_lengths(metric.directions, metric.means, found):
+        raise LinAlgError("an edge of the loop has no length, or the loop no width")
+    return found
+
+
+def project_lengths(
+    loop: Loop,
+    x_loop: FloatArray,
+    solved: Callable[[LengthMetric, FloatArray], FloatArray] = _solved,
+) -> FloatArray | None:
     """Return the nearest loop (n_b, d) that keeps its lengths, to rounding; None if lost.
 
     Gauss-Newton in the norm sum_v <s_v> |dx_v|^2. Next to a much longer edge, what corrects
@@ -50,20 +69,24 @@ def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
     eps = float(np.finfo(np.float64).eps)
     rounding = 4 * eps * float(np.abs(x_loop).max() / loop.rest_lengths.min())
     small = max(1e-12, rounding)
-    x, error = x_loop, np.inf
+    x, error, s = x_loop, np.inf, loop.rest_lengths
     for _ in range(_PROJECTION_STEPS):
-        excess = loop.constraint(x)
-        previous, error = error, float(np.abs(excess / loop.rest_lengths).max())
+        chords = loop.chords(x)
+        lengths = np.sqrt(np.einsum("vd,vd->v", chords, chords))
+        # As Loop.constraint does, which would measure the edges once more.
+        excess = (lengths - s) * (lengths + s) / (2 * s)
+        previous, error = error, float(np.abs(excess / s).max())
         if not np.isfinite(error) or error > 1e3:
             return None
         # Quadratic convergence ends where rounding begins: then error stops falling.
         if error < 1e-15 or (error < small and error >= 0.25 * previous):
             return x
+        metric = LengthMetric(chords / s[:, None], loop.mean_lengths)
         try:
-            pull = length_metric(loop, x).solve(excess)
+            pull = solved(metric, excess)
         except LinAlgError:
             return None
-        x = x - loop.tension_force(x, pull) / mass
+        x = x - metric.force(pull) / mass
     return x if error < small else None
 
 
@@ -167,6 +190,14 @@ class Lengths:
     ) -> tuple[FloatArray | None, FloatArray]:
         """Return nothing by positions, and tensions / s (n,) by edges."""
         return None, tensions / self.loop.rest_lengths
+
+
+class FilmLengths(Lengths):
+    """The same of a loop whose film needs compiled loops anyway: it makes use of them."""
+
+    def project(self, x: FloatArray) -> FloatArray | None:
+        """Return the nearest loop that keeps its lengths."""
+        return project_lengths(self.loop, x, _quickly_solved)
 
 
 class Unconstrained:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, cross
 from eulerplateau.loop.term import OwnTerm
 
 # Edges in which a resolved loop can turn back on itself.
@@ -79,10 +79,20 @@ class Loop:
 
         They couple vertex v to itself, to v + 1 and to v + 2.
         """
+        found, stress = self._bare_chain.copy(), tensions / self.rest_lengths
+        found[0] += stress
+        found[0, 1:] += stress[:-1]
+        found[0, 0] += stress[-1]
+        found[1] -= stress
+        return found
+
+    @cached_property
+    def _bare_chain(self) -> FloatArray:
+        """The same without tensions."""
         s, m = self.rest_lengths, self.mean_lengths
         after = np.roll(m, -1)
         # The same by the edges: each with itself, and with the next.
-        own = 2 * (1 / m + 1 / after) / s**2 + tensions / s
+        own = 2 * (1 / m + 1 / after) / s**2
         beside = -2 / (s * np.roll(s, -1) * after)
         before = np.roll(beside, 1)
         return np.stack(
@@ -190,8 +200,8 @@ def largest_turning(x_loop: FloatArray) -> float:
     x_loop : (n_b, 3) float, the vertices of a closed loop in any unit.
     """
     after = differences(x_loop)
-    before = np.roll(after, 1, axis=0)
-    sine = np.linalg.norm(np.cross(before, after), axis=1)
+    before = np.concatenate([after[-1:], after[:-1]])
+    sine = np.linalg.norm(cross(before, after), axis=1)
     cosine = (before * after).sum(axis=1)
     return float(np.degrees(np.arctan2(sine, cosine).max()))
 

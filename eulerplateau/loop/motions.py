@@ -58,24 +58,25 @@ def sliding(loop: Loop, x: FloatArray) -> FloatArray | None:
     """
     if not all(term.slides for term in loop.terms.values()):
         return None
-    from eulerplateau.loop.slide_kernels import SLIDES, keep_lengths  # not for springs
+    motions = orthonormal_motions(loop, x)
+    rigid = RIGID_MOTIONS if x.shape[1] == 3 else 3
+    return motions[rigid] if len(motions) > rigid else None
 
-    chords = loop.chords(x)
-    along = chords / np.linalg.norm(chords, axis=1)[:, None]
-    slide = along + np.roll(along, 1, axis=0)
-    directions = chords / loop.rest_lengths[:, None]
-    if not keep_lengths(directions, loop.mean_lengths, slide):
+
+def orthonormal_motions(loop: Loop, x: FloatArray) -> FloatArray:
+    """Return rigid motions (m, n, d) and sliding, if that is not rigid, of a loop (n, d).
+
+    They are orthonormal in the norm sum_v <s_v> |p_v|^2. Raises LinAlgError if an edge has
+    no length.
+    """
+    from eulerplateau.loop.slide_kernels import fill_motions  # not for springs
+
+    motions = np.empty((RIGID_MOTIONS + 1 if x.shape[1] == 3 else 4, *x.shape))
+    directions = loop.chords(x) / loop.rest_lengths[:, None]
+    found = fill_motions(x, directions, loop.mean_lengths, motions)
+    if not found:
         raise LinAlgError("an edge of the loop has no length, or the loop no width")
-    root = np.repeat(np.sqrt(loop.mean_lengths), x.shape[1])
-    rigid = np.linalg.qr(rigid_motions(x) * root[:, None])[0]
-    weighted = slide.ravel() * root
-    whole = float(np.linalg.norm(weighted))
-    weighted = weighted - rigid @ (rigid.T @ weighted)
-    size = float(np.linalg.norm(weighted))
-    if size < SLIDES * whole:
-        return None
-    found: FloatArray = (weighted / (size * root)).reshape(x.shape)
-    return found
+    return motions[:found]
 
 
 def free_motions(loop: Loop, x: FloatArray, slides: bool) -> FloatArray:

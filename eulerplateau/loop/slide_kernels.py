@@ -102,6 +102,105 @@ def keep_lengths(directions: FloatArray, means: FloatArray, field: FloatArray) -
 
 
 @njit(cache=True, error_model="numpy")
+def fill_motions(
+    x: FloatArray, directions: FloatArray, means: FloatArray, motions: FloatArray
+) -> int:
+    """Fill motions (m, n, d) of a loop x (n, d) that cost nothing; return how many do.
+
+    Orthonormal in the norm sum_v <s_v> |p_v|^2: translations, rotations, and last sliding,
+    unless that is rigid: m = 7 in space, 4 in a plane. None where `solve_lengths` fails.
+    """
+    n, d = x.shape
+    last, mass = len(motions) - 1, means.sum()
+    motions[:] = 0.0
+    centre, slide = np.zeros(d), motions[last]
+    for v in range(n):
+        size = 0.0
+        for c in range(d):
+            centre[c] += means[v] * x[v, c] / mass
+            motions[c, v, c] = 1.0 / np.sqrt(mass)
+            size += directions[v, c] ** 2
+        for c in range(d):
+            slide[v, c] += directions[v, c] / np.sqrt(size)
+            slide[(v + 1) % n, c] += directions[v, c] / np.sqrt(size)
+    for k in range(d, last):
+        # About the axis across p and q.
+        p, q = ((k + 1) % 3, (k + 2) % 3) if d == 3 else (0, 1)
+        for v in range(n):
+            motions[k, v, p] = centre[q] - x[v, q]
+            motions[k, v, q] = x[v, p] - centre[p]
+    if not keep_lengths(directions, means, slide):
+        return 0
+    for k in range(d, last + 1):
+        whole = work(slide, motions[k], means) if k == last else 0.0
+        # Twice: once more for what rounding has left.
+        for other in 2 * list(range(k)):
+            share = work(motions[other], motions[k], means)
+            for v in range(n):
+                for c in range(d):
+                    motions[k, v, c] -= share * motions[other, v, c]
+        left = work(motions[k], motions[k], means)
+        if not left >= SLIDES**2 * whole:
+            return k
+        motions[k] /= np.sqrt(left)
+    return last + 1
+
+
+@njit(cache=True, error_model="numpy")
+def work(one: FloatArray, other: FloatArray, means: FloatArray) -> float:
+    """Return sum_v <s_v> p_v . q_v of two fields (n, d)."""
+    total = 0.0
+    for v in range(len(one)):
+        for c in range(one.shape[1]):
+            total += means[v] * one[v, c] * other[v, c]
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def balance(
+    directions: FloatArray,
+    means: FloatArray,
+    motions: FloatArray,
+    force: FloatArray,
+    tensions: FloatArray,
+    left: FloatArray,
+) -> float:
+    """Fill the tensions (n,) that balance a force (n, d) best, and what they leave of it.
+
+    In the norm of M^-1, and not along motions (m, n, d), orthonormal. Returns the largest
+    of what tensions add; nan where `solve_lengths` fails.
+    """
+    n, d = force.shape
+    pull, largest = np.empty(n), 0.0
+    tensions[:], left[:] = 0.0, force
+    # Twice: once more for what rounding has left.
+    for _ in range(2):
+        for v in range(n):
+            after, pull[v] = (v + 1) % n, 0.0
+            for c in range(d):
+                moved = left[after, c] / means[after] - left[v, c] / means[v]
+                pull[v] += directions[v, c] * moved
+        if not solve_lengths(directions, means, pull):
+            return np.nan
+        tensions -= pull
+        for v in range(n):
+            for c in range(d):
+                before = tensions[v - 1] * directions[v - 1, c]
+                added = before - tensions[v] * directions[v, c]
+                left[v, c] = force[v, c] + added
+                largest = max(largest, abs(added))
+    for k in range(len(motions)):
+        share = 0.0
+        for v in range(n):
+            for c in range(d):
+                share += motions[k, v, c] * left[v, c]
+        for v in range(n):
+            for c in range(d):
+                left[v, c] -= share * means[v] * motions[k, v, c]
+    return largest
+
+
+@njit(cache=True, error_model="numpy")
 def work_of(
     units: FloatArray, lengths: FloatArray, forces: FloatArray, row: FloatArray
 ) -> None:

@@ -14,10 +14,10 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from scipy.sparse import coo_array, csc_array, csr_array
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dgbtrf, dgbtrs
 
-from eulerplateau.arrays import FloatArray, IntArray, cross
+from eulerplateau.arrays import FloatArray, IntArray
 
 # What multiplies x, h x', h^2 x'' at the end of an edge of length h, by t = 0 ... 1.
 _END = (
@@ -29,6 +29,8 @@ _END = (
 _BEGINNING = tuple((-1) ** k * p(Polynomial((1.0, -1.0))) for k, p in enumerate(_END))
 # Gauss points of an edge: exact for the squared second derivative, of degree 6.
 _POINTS = 4
+# Entries of a row beside the diagonal, on either side: two unknowns a vertex, two vertices.
+_BAND = 5
 
 
 def _hermite(t: FloatArray, order: int) -> FloatArray:
@@ -40,11 +42,13 @@ def _hermite(t: FloatArray, order: int) -> FloatArray:
 _T, _WEIGHTS = np.polynomial.legendre.leggauss(_POINTS)
 _T, _WEIGHTS = 0.5 * (_T + 1), 0.5 * _WEIGHTS
 _VALUE, _FIRST, _SECOND = (_hermite(_T, order) for order in range(3))
+# By this, C (6, 6), data d make up the integral of r x r' ds: it is the sum of d x C d.
+_AHEAD = 0.5 * (_VALUE.T @ (_WEIGHTS[:, None] * _FIRST))
+_AHEAD -= _AHEAD.T.copy()
 _MIDDLE = _hermite(np.array([0.5]), 0)
 # Jumps of the third and the fourth derivative (2, 2, 2, 3): by order, the edge before a
 # vertex and, negative, the one after it, its beginning and end, the power of its length.
-_ORDERS = np.array([3, 4]).reshape(2, 1, 1, 1, 1)
-_POWERS = np.arange(3)[:, None]
+_ORDERS, _POWERS = np.array([3, 4]), np.arange(3)
 _JUMPS = np.stack(
     [[_hermite(np.ones(1), order)[0], -_hermite(np.zeros(1), order)[0]] for order in (3, 4)]
 ).reshape(2, 2, 2, 3)
@@ -59,19 +63,21 @@ class Splines:
     def through(self, x: FloatArray) -> SplineLoop:
         """Return the spline through a loop's vertices (n, 3)."""
         data = np.empty((len(x), 6, 3))
-        derivatives = self._factor.solve(self._knots @ x).reshape(len(x), 2, -1)
+        derivatives = self._solved(np.matmul(self._knots, x[self._around]))
         at_vertices = np.concatenate([x[:, None], derivatives], axis=1)
         np.multiply(at_vertices, self._powers, out=data[:, :3])
-        np.multiply(at_vertices[self._after], self._powers, out=data[:, 3:])
+        np.multiply(at_vertices[self._around[:, 2]], self._powers, out=data[:, 3:])
         return SplineLoop(self, data)
 
     def pulled_back(self, by_data: FloatArray) -> FloatArray:
         """Return a gradient by the vertices (n, 3), given by Hermite's data (n, 6, 3)."""
-        n = len(by_data)
+        before, _, after = self._around.T
         at_vertices = self._powers * by_data[:, :3]
-        at_vertices[self._after] += self._powers * by_data[:, 3:]
-        derivatives = self._factor.solve(at_vertices[:, 1:].reshape(2 * n, -1), trans="T")
-        found: FloatArray = at_vertices[:, 0] + self._adjoint @ derivatives
+        at_vertices += (self._powers * by_data[:, 3:])[before]
+        derivatives = self._solved(at_vertices[:, 1:], adjoint=True)
+        by_knots = np.matmul(self._knots.swapaxes(1, 2), derivatives)
+        found: FloatArray = at_vertices[:, 0]
+        found += by_knots[:, 1] + by_knots[after, 0] + by_knots[before, 2]
         return found
 
     @cached_property
@@ -81,44 +87,67 @@ class Splines:
         return h[:, :, None]
 
     @cached_property
-    def _after(self) -> IntArray:
-        return np.roll(np.arange(len(self.lengths)), -1)
+    def _around(self) -> IntArray:
+        """The vertex (n, 3) before each, itself, and the one after it."""
+        at = np.arange(len(self.lengths))
+        return np.stack([np.roll(at, 1), at, np.roll(at, -1)], axis=1)
 
     @cached_property
-    def _factor(self) -> SuperLU:
-        """The equations of the derivatives at the vertices, factorised."""
-        return splu(self._continuity[0])
+    def _jumps(self) -> FloatArray:
+        """Jumps of the third and the fourth derivative at each vertex (n, 2, 3, 3).
 
-    @cached_property
-    def _knots(self) -> csr_array:
-        """What the vertices' positions contribute to these equations."""
-        return self._continuity[1]
-
-    @cached_property
-    def _adjoint(self) -> csr_array:
-        return csr_array(self._knots.T)
-
-    @cached_property
-    def _continuity(self) -> tuple[csc_array, csr_array]:
-        """Equations of the third and the fourth derivative: the edge before, minus after.
-
-        The unknowns are x' and x'' at vertex 0, at vertex 1, ...
+        By what x, x' and x'' at the vertex before, there and after contribute to them.
         """
-        n, h, after = len(self.lengths), self.lengths, self._after
-        # By order, edge, its end, power of its length, and vertex: (2, 2, 2, 3, n).
-        lengths = np.stack([h, h[after]])
-        entry = _JUMPS[..., None] * (h / lengths)[:, None, None] ** _ORDERS
-        entry = entry * lengths[:, None, None] ** _POWERS
-        at = np.arange(n)
-        vertex = np.stack([[at, after], [after, after[after]]])[None, :, :, None]
-        row = np.broadcast_to(2 * at + _ORDERS - _ORDERS.min(), entry.shape)
-        column = np.broadcast_to(2 * vertex + _POWERS - 1, entry.shape)
-        inside = (..., slice(1, None), slice(None))
-        known = (..., slice(0, 1), slice(None))
-        columns = np.broadcast_to(vertex, entry[known].shape)
-        matrix = _sparse(entry[inside], row[inside], column[inside], (2 * n, 2 * n))
-        knots = _sparse(-entry[known], row[known], columns, (2 * n, n))
-        return csc_array(matrix), csr_array(knots)
+        before, after = self.lengths[self._around[:, 0]], self.lengths
+        found = np.zeros((len(after), 2, 3, 3))
+        for place, h in enumerate((before, after)):
+            # Both in units of the edge after the vertex.
+            scale = (after / h)[:, None] ** _ORDERS
+            by_ends = scale[:, :, None, None] * _JUMPS[:, place]
+            found[:, :, place : place + 2] += (
+                by_ends * (h[:, None] ** _POWERS)[:, None, None]
+            )
+        return found
+
+    @cached_property
+    def _knots(self) -> FloatArray:
+        """What the vertices' positions contribute to the equations (n, 2, 3)."""
+        return np.ascontiguousarray(-self._jumps[..., 0])
+
+    def _solved(self, rhs: FloatArray, adjoint: bool = False) -> FloatArray:
+        """Return the derivatives (n, 2, 3) that solve their equations, or the adjoint."""
+        factor, pivots, order = self._factor
+        ordered = rhs[order].reshape(2 * len(order), -1)
+        solved, _ = dgbtrs(factor, _BAND, _BAND, ordered, pivots, trans=int(adjoint))
+        found = np.empty_like(rhs)
+        found[order] = solved.reshape(rhs.shape)
+        return found
+
+    @cached_property
+    def _factor(self) -> tuple[FloatArray, IntArray, IntArray]:
+        """The equations of x' and x'' at the vertices, factorised, and their order.
+
+        In the order 0, n - 1, 1, n - 2, ... neighbours are two places apart at most, round
+        the whole loop: the matrix is banded.
+        """
+        n = len(self.lengths)
+        order = np.empty(n, dtype=np.int64)
+        order[::2], order[1::2] = (
+            np.arange((n + 1) // 2),
+            np.arange(n - 1, n - 1 - n // 2, -1),
+        )
+        place = np.empty_like(order)
+        place[order] = np.arange(n)
+        unknown = np.arange(2)
+        row = 2 * place[:, None, None, None] + unknown[:, None, None]
+        column = 2 * place[self._around][:, None, :, None] + unknown
+        matrix = np.zeros((3 * _BAND + 1, 2 * n))
+        at = np.broadcast_arrays(2 * _BAND + row - column, column)
+        np.add.at(matrix, tuple(at), self._jumps[..., 1:])
+        factor, pivots, failed = dgbtrf(matrix, _BAND, _BAND)
+        if failed:
+            raise LinAlgError("the loop has edges without length")
+        return factor, pivots, order
 
 
 @dataclass(frozen=True)
@@ -167,21 +196,24 @@ class SplineLoop:
     @cached_property
     def spanned(self) -> FloatArray:
         """Half the integral of r x r' ds (3,): area times normal of a flat loop."""
-        turned = cross(_along(_VALUE, self.data), self._first)
-        spanned: FloatArray = 0.5 * (_WEIGHTS @ turned.sum(axis=0))
-        return spanned
+        products = self.data.reshape(-1, 3).T @ self._ahead.reshape(-1, 3)
+        turned: FloatArray = products[[1, 2, 0], [2, 0, 1]] - products[[2, 0, 1], [1, 2, 0]]
+        return 0.5 * turned
 
     def spanned_gradient(self, normal: FloatArray) -> FloatArray:
         """Return the gradient of its part along a normal (3,).
 
-        d(r x r') . n = dr . (r' x n) + dr' . (n x r).
+        It is C d x n, d the data: that part is half the sum of d . (C d x n).
         """
         x, y, z = normal.tolist()
         turn = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        half = 0.5 * _WEIGHTS[:, None]
-        coupled = np.matmul(_VALUE.T, half * _FIRST) - np.matmul(_FIRST.T, half * _VALUE)
-        gradient: FloatArray = np.matmul(_along(coupled, self.data), turn)
+        gradient: FloatArray = np.matmul(self._ahead, turn)
         return gradient
+
+    @cached_property
+    def _ahead(self) -> FloatArray:
+        """The data times C (n, 6, 3)."""
+        return _along(_AHEAD, self.data)
 
     @property
     def middles(self) -> FloatArray:
@@ -206,9 +238,3 @@ def _along(basis: FloatArray, data: FloatArray) -> FloatArray:
 def _adjoint(basis: FloatArray, forces: FloatArray) -> FloatArray:
     """Return the gradient by data (n, 6, 3) of what forces (n, m, 3) do on such sums."""
     return _along(basis.T, forces)
-
-
-def _sparse(
-    entry: FloatArray, row: IntArray, column: IntArray, shape: tuple[int, int]
-) -> coo_array:
-    return coo_array((entry.ravel(), (row.ravel(), column.ravel())), shape=shape)

@@ -11,6 +11,7 @@ stays closed where sum_u N_u y_u = 0. A matrix by vertices becomes one by turns 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -57,14 +58,15 @@ class LengthMetric:
         """LAPACK's factor of the matrix without w w^T, then w, and w solved for."""
         u, ease = self.directions, 1 / self.means
         squares = np.einsum("vd,vd->v", u, u)
-        diagonal = squares * (ease + np.roll(ease, -1))
+        diagonal = squares * (ease + np.concatenate([ease[1:], ease[:1]]))
         beside = -np.einsum("vd,vd->v", u[1:], u[:-1]) * ease[1:]
         corner = -float(u[-1] @ u[0]) * ease[0]
-        border, root = np.zeros(len(u)), np.sqrt(abs(corner))
-        even = (squares[0] / squares[-1]) ** 0.25 if squares[[0, -1]].all() else 1.0
-        border[0], border[-1] = root * even, np.copysign(root / even, corner)
+        border, root = np.zeros(len(u)), math.sqrt(abs(corner))
+        first, last = float(squares[0]), float(squares[-1])
+        even = (first / last) ** 0.25 if first and last else 1.0
+        border[0], border[-1] = root * even, math.copysign(root / even, corner)
         pivots, ratios, _ = dpttrf(diagonal - border * border, beside)
-        if not (pivots > 0).all():
+        if not pivots.min() > 0:
             raise LinAlgError("an edge of the loop has no length, or the loop no width")
         return pivots, ratios, border, dpttrs(pivots, ratios, border)[0]
 

@@ -239,10 +239,11 @@ def _steps(loop: Loop, model: FilmModel, smooth: _Smooth) -> Iterator[tuple[_Sta
 
 def _smoothed(loop: Loop, forces: FloatArray) -> FloatArray:
     """Return forces (n, 3) smoothed by the mass matrix of linear elements."""
-    s, density = loop.rest_lengths[:, None], forces / loop.mean_lengths[:, None]
-    across = s / 6 * (density + np.roll(density, -1, axis=0))
-    own = (s + np.roll(s, 1, axis=0)) / 6 * density
-    return own + across + np.roll(across, 1, axis=0)
+    density = forces / loop.mean_lengths[:, None]
+    across: FloatArray = density + np.concatenate([density[1:], density[:1]])
+    across *= loop.rest_lengths[:, None] / 6
+    across += np.concatenate([across[-1:], across[:-1]])
+    return forces / 3 + across
 
 
 def _mixed(known: list[tuple[FloatArray, FloatArray]], weights: FloatArray) -> FloatArray:

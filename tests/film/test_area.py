@@ -102,7 +102,7 @@ def test_gradient_is_the_cotangent_laplacian_of_the_positions(
 ) -> None:
     """Pinkall and Polthier (1993)."""
     sides = tiling.sides(x)
-    laplacian = tiling.cotangent_laplacian(sides)
+    laplacian = tiling.matrix(tiling.cotangent_laplacian(sides))
     np.testing.assert_allclose(laplacian @ x, tiling.gradient(sides), atol=1e-14)
     np.testing.assert_allclose(laplacian.sum(axis=1), 0, atol=1e-12)
 
@@ -116,7 +116,7 @@ def test_normal_hessian_is_the_hessian_along_the_directions(
     for d in range(3):
         columns[d::3][np.diag_indices(len(x))] = directions[:, d]
     expected = columns.T @ (soap_films.hessian(tiling, x) @ columns)
-    found = tiling.normal_hessian(sides, directions).toarray()
+    found = tiling.matrix(tiling.normal_hessian(sides, directions)).toarray()
     np.testing.assert_allclose(found, expected, atol=1e-12 * np.abs(expected).max())
 
 
@@ -196,7 +196,8 @@ def test_flat_film_pulls_at_nothing_inside_and_lets_its_vertices_slide(
     sliding = soap_films.hessian(tiling, oval.x)[:, free][free]
     assert abs(sliding).max() < 1e-13
     # Across its plane it resists: the matrix of the heights is positive definite.
-    across = tiling.normal_hessian(sides, np.tile([0.0, 0.0, 1.0], (len(oval.x), 1)))
+    upwards = np.tile([0.0, 0.0, 1.0], (len(oval.x), 1))
+    across = tiling.matrix(tiling.normal_hessian(sides, upwards))
     assert np.linalg.eigvalsh(across[:, inside][inside].toarray())[0] > 0.01
 
 

@@ -91,7 +91,7 @@ def test_flips_leave_a_surface_of_acute_angles_sums_and_the_same_disk() -> None:
 
     def lowest(film: Tiling) -> float:
         """The least weight of an edge inside; L has minus half the weights beside."""
-        laplacian = film.cotangent_laplacian(film.sides(x)).toarray()
+        laplacian = film.matrix(film.cotangent_laplacian(film.sides(x))).toarray()
         inner = np.ones((film.n_v, film.n_v), dtype=bool)
         inner[film.loop, np.roll(film.loop, -1)] = inner[
             np.roll(film.loop, -1), film.loop

@@ -7,10 +7,11 @@ import pytest
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.lengths import jacobian, length_metric
+from eulerplateau.loop.lengths import jacobian
 from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.motions import rigid_motions, sliding
 from eulerplateau.loop.slide_kernels import SLIDES, keep_lengths, solve_lengths
+from eulerplateau.loop.turns import length_metric
 
 CASES = [(n, d) for n in (3, 4, 5, 60) for d in (2, 3)]
 

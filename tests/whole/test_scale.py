@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.sparse.csgraph import connected_components
 
-from eulerplateau.film.dissection import dissect
+from eulerplateau.film.dissection import Graph, dissect
 from eulerplateau.film.quadratic import springs
 from eulerplateau.mesh.disk import Disk
 from tests.helpers import shapes
@@ -27,14 +27,14 @@ def large() -> Disk:
 
 def test_parts_hold_every_interior_vertex_once(large: Disk) -> None:
     graph = springs(large).laplacian().tocsr()
-    parts = dissect(graph, large.loop, large.interior)
+    parts = dissect(Graph(graph.indptr, graph.indices), large.loop, large.interior)
     assert len(parts) > 10
     np.testing.assert_array_equal(np.sort(np.concatenate(parts)), large.interior)
 
 
 def test_what_is_eliminated_first_falls_apart_into_small_pieces(large: Disk) -> None:
     graph = springs(large).laplacian().tocsr()
-    parts = dissect(graph, large.loop, large.interior)
+    parts = dissect(Graph(graph.indptr, graph.indices), large.loop, large.interior)
     # The last part cuts the film in two, and so on down: without the last 2^k - 1 parts
     # no piece holds more than about 1 / 2^k of the vertices.
     for k in (1, 2, 3):

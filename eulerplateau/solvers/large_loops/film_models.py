@@ -18,10 +18,11 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dgeqrf, dorgqr
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import AreaOfLoop, IndefiniteFactor, LoopStiffness
-from eulerplateau.loop import Loop, LoopEnergy, length_metric
+from eulerplateau.loop import Loop, LoopEnergy, orthonormal_motions, slide_kernels
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.models import DenseModels, Model
 from eulerplateau.solvers.second_variation import (
@@ -30,7 +31,6 @@ from eulerplateau.solvers.second_variation import (
     stability,
     tangent_model,
 )
-from eulerplateau.solvers.tangent_space import balanced, orthonormal
 
 # Loops of so few vertices are soon looked at as a whole, where a way leads down: one shift
 # is tried, and that farther from rest.
@@ -184,7 +184,7 @@ class FilmModel:
         for _ in range(_ROUNDS):
             for _ in range(2):
                 block = block - basis @ (basis.T @ block)
-            block = np.linalg.qr(block)[0]
+            block = orthonormal_columns(block)
             image = root * self.moved(factor, root * block)
             basis, images = np.hstack([basis, block]), np.hstack([images, image])
             compliance = basis.T @ images
@@ -194,6 +194,13 @@ class FilmModel:
                 break
             block = image
         return lowest
+
+
+def orthonormal_columns(columns: FloatArray) -> FloatArray:
+    """Return columns (n, m) made orthonormal; numpy takes longer over three of them."""
+    factor, tau, _, _ = dgeqrf(columns)
+    found: FloatArray = dorgqr(factor, tau)[0]
+    return found
 
 
 @dataclass(frozen=True)
@@ -206,20 +213,22 @@ class FilmModels(DenseModels):
 
     def at(self, x: FloatArray, before: Model | None = None) -> FilmModel:
         """Return the model at a loop (n, 3)."""
-        forces = self.energy.forces(x)
+        forces, means = self.energy.forces(x), self.loop.mean_lengths
         total = sum(forces[1:], start=forces[0])
-        motions = orthonormal(self.energy, self.energy.free_motions(x))
-        metric = length_metric(self.loop, x)
-        tensions, unbalanced = balanced(self.energy, x, total, motions, metric)
-        forces.append(self.energy.constraint.force(x, tensions))
-        largest = max(float(np.abs(force).max()) for force in forces)
+        motions = orthonormal_motions(self.loop, x)
+        tensions, unbalanced = np.empty(len(x)), np.empty_like(x)
+        directions = self.loop.chords(x) / self.loop.rest_lengths[:, None]
+        pull = slide_kernels.balance(
+            directions, means, motions, total, tensions, unbalanced
+        )
+        largest = max(pull, *(float(np.abs(force).max()) for force in forces))
         return FilmModel(
             film=self.film,
             load=self.load,
             loop=self.loop,
             energy=self.energy,
             x=x,
-            motions=motions,
+            motions=(means[:, None] * motions).reshape(len(motions), -1).T,
             tensions=tensions,
             unbalanced=unbalanced,
             residual=float(np.abs(unbalanced).max()) / largest,

@@ -28,7 +28,7 @@ from eulerplateau.solvers.equilibrium import (
     Status,
 )
 from eulerplateau.solvers.loop_terms import beyond_linear
-from eulerplateau.solvers.penalty import bearable_penalty, first_penalty
+from eulerplateau.solvers.penalty import bearable_penalty, first_penalty, rounded
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.trial_space import TrialSpace, trial_space
 from eulerplateau.solvers.variables import Variables
@@ -38,7 +38,8 @@ from eulerplateau.solvers.variables import Variables
 _FIRST_TOLERANCE = 1e-2
 _TIGHTENING = 0.1
 _ROOM = 0.3
-# Energy, alpha / L, that is nothing to gain between base points: a circle has 4 pi^2.
+# Energy, alpha / L, that is nothing to gain between base points: a circle has 4 pi^2. What
+# tensions do where edges are rounded is nothing, either.
 _NOTHING = 1e-11
 # Base points in a row at their tolerance with nothing gained, after which it is over; more
 # where forces are larger than they should be, which is rounding's doing if it stays so.
@@ -221,6 +222,7 @@ def _minimise(
     base = space.lift(forces)
     gradient = np.empty_like(base)
     goal = iterate.tolerance * scale
+    nothing = max(_NOTHING, float(np.linalg.norm(tension)) * rounded(shape))
     last = reached = np.zeros(variables.size)
     moved, value, change = np.zeros_like(base), 0.0, 0.0
     idle = _IDLE
@@ -271,7 +273,7 @@ def _minimise(
         iterate,
         shape=space.reached(variables.displacement(reached)),
         iterations=iterate.iterations + max(int(found.nit), 1),
-        idle=iterate.idle + idle if change > -_NOTHING else 0,
+        idle=iterate.idle + idle if change > -nothing else 0,
     )
 
 

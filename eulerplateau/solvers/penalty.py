@@ -31,11 +31,15 @@ def bearable_penalty(
 ) -> float:
     """Return the penalty mu, alpha / L^2, that rounded positions bear.
 
-    They are rounded by eps |x|, and so are the lengths of edges; tensions are then wrong by
-    mu / s of that, and the forces on a vertex by those of two edges: that is to be small
-    beside the residual, which is all that forces may leave of the largest.
+    Tensions are wrong by mu / s of what edges are rounded by, and the forces on a vertex by
+    those of two edges: that is to be small beside the residual, which is all that forces
+    may leave of the largest.
     """
     largest = max(float(np.abs(part).max()) for part in forces)
-    rounded = float(np.spacing(np.abs(shape.x_loop).max()))
     shortest = float(loop.rest_lengths.min())
-    return _ROUNDED * residual * largest * shortest / (2 * rounded)
+    return _ROUNDED * residual * largest * shortest / (2 * rounded(shape))
+
+
+def rounded(shape: Shape) -> float:
+    """Return what the loop's positions, and with them its edges, are rounded by."""
+    return float(np.spacing(np.abs(shape.x_loop).max()))

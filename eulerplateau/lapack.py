@@ -30,7 +30,8 @@ def _compiled(name: str, public: str) -> Any:
 
 _lapack, _blas = _compiled("_flapack", "lapack"), _compiled("_fblas", "blas")
 
-dgeqrf, dpotrf, dpotrs = _lapack.dgeqrf, _lapack.dpotrf, _lapack.dpotrs
+dgeqrf, dgtsv = _lapack.dgeqrf, _lapack.dgtsv
+dpotrf, dpotrs = _lapack.dpotrf, _lapack.dpotrs
 dpttrf, dpttrs = _lapack.dpttrf, _lapack.dpttrs
 dsygst, dtrtrs = _lapack.dsygst, _lapack.dtrtrs
 dsyrk, dtrsm = _blas.dsyrk, _blas.dtrsm

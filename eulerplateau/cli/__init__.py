@@ -70,6 +70,8 @@ commands.add_command(sweep)
 
 def main() -> NoReturn:
     """Run the command line; every error a user can cause is one line and an exit code."""
+    # None of pydantic's plugins is for what is read here; to look for them takes long.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     logging.basicConfig(format="eulerplateau: %(message)s", level=logging.WARNING)
     try:
         code = _code()

@@ -79,7 +79,7 @@ class Curvatures:
     def known(
         cls, mesh: Disk, x: FloatArray, vectors: FloatArray, angles: FloatArray
     ) -> Curvatures:
-        """Return the same where the triangles' area vectors and angles (n_t, 3) are known."""
+        """Return the same by the triangles' known area vectors and angles (n_t, 3)."""
         return cls(_loop_frame(mesh, x, vectors), _defects(mesh, angles))
 
 

@@ -20,8 +20,8 @@ from eulerplateau.arrays import FloatArray, IntArray
 Fields = Mapping[str, NDArray[Any]]
 
 _KINDS = {"f": "Float", "i": "Int", "u": "UInt"}
-# The fastest of zlib's levels; coordinates would lose a twenty-fifth of their size to it, and
-# take longer than all else.
+# The fastest of zlib's levels; coordinates would lose a twenty-fifth of their size to it,
+# and take longer than all else.
 _LEVEL, _STORED = 1, 0
 # So many bytes are stored as they are: to set up zlib takes longer than to write them.
 _FEW = 2048

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.runs.cubics import between, spline_slopes
 from eulerplateau.runs.rows import BranchRecord, Record
 
 # Of a row, whatever the run follows: a film or a cell.
@@ -188,15 +189,13 @@ class Branch(Series):
         Near a pitchfork the amplitude is linear in the arclength and the load quadratic.
         What is nowhere negative is not so between the points either, not even at a kink.
         """
-        # Slow to load, and only pictures need it.
-        from scipy.interpolate import CubicSpline
-
         s = np.array([row.arclength for row in self.rows[part]])
         if self.rows[part][0] is self.rows[0] and self.start is not None:
             s[0] = 0.0
         places = np.arange(_BETWEEN * (len(s) - 1) + 1) / _BETWEEN
-        curve = CubicSpline(s, values[part])
-        fine: FloatArray = curve(np.interp(places, np.arange(len(s)), s))
+        known = values[part]
+        fine = np.interp(places, np.arange(len(s)), s)
+        fine = between(s, known, spline_slopes(s, known), fine)
         return fine if values[part].min() < 0.0 else np.maximum(fine, 0.0)
 
 
@@ -241,23 +240,25 @@ def energy_above(*first: Series) -> Callable[[Series], FloatArray]:
     the energy's derivative is known (energy_rate), so that cubics interpolate the first
     branch's energy to fourth order in the step.
     """
-    from scipy.interpolate import CubicHermiteSpline
-
     known = {row.load: row for series in first for row in _one_way(series.rows)}
     if len(known) < 2:
         return lambda branch: np.full(len(branch.rows), np.nan)
     loads = np.array(sorted(known))
     energy = np.array([known[load].energy for load in loads])
     slope = np.array([known[load].energy_rate for load in loads])
-    base = CubicHermiteSpline(loads, energy, slope, extrapolate=False)
 
-    def first_energy(load: float) -> float:
+    def excess(branch: Series) -> FloatArray:
+        places = branch.loads
+        base = between(loads, energy, slope, places)
+        base[(places < loads[0]) | (places > loads[-1])] = np.nan
         # Evaluated where it is known, a cubic is wrong by its rounding.
-        return float(known[load].energy if load in known else base(load))
+        for place, load in enumerate(places.tolist()):
+            if load in known:
+                base[place] = known[load].energy
+        above: FloatArray = branch.values(lambda row: row.energy) - base
+        return above
 
-    return lambda branch: np.array(
-        [row.energy - first_energy(row.load) for row in branch.rows]
-    )
+    return excess
 
 
 def _one_way(rows: Sequence[Any]) -> list[Any]:

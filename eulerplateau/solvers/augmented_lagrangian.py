@@ -28,6 +28,7 @@ from eulerplateau.solvers.equilibrium import (
     Status,
 )
 from eulerplateau.solvers.loop_terms import beyond_linear
+from eulerplateau.solvers.penalty import bearable_penalty, first_penalty, rounded
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.trial_space import TrialSpace, trial_space
 from eulerplateau.solvers.variables import Variables
@@ -37,18 +38,18 @@ from eulerplateau.solvers.variables import Variables
 _FIRST_TOLERANCE = 1e-2
 _TIGHTENING = 0.1
 _ROOM = 0.3
-# Energy, alpha / L, that is nothing to gain between base points: a circle has 4 pi^2.
+# Energy, alpha / L, that is nothing to gain between base points: a circle has 4 pi^2. What
+# tensions do where edges are rounded is nothing, either.
 _NOTHING = 1e-11
 # Base points in a row at their tolerance with nothing gained, after which it is over; more
-# where forces of a fine loop, being rounded, are larger than they should be.
+# where forces are larger than they should be, which is rounding's doing if it stays so.
 _IDLE, _IDLE_AT_ROUNDING = 10, 40
 # Forces inside a film at rest over the largest of its forces on the loop.
 _FILM_BALANCE = 1e-3
 # Relative length error up to which a loop is near enough to be held as it moves.
 _NEAR = 1.0
-# Relative length error above which the penalty may have to grow, and the least penalty.
+# Relative length error above which the penalty may have to grow.
 _STRETCHED = 1e-2
-_STIFFER_THAN_BENDING = 1000.0
 # Iterations, in those from one base point, on loops that turn farther than their mesh can
 # carry, before such a loop is taken for where the way leads.
 _PATIENCE = 20
@@ -105,7 +106,7 @@ def descend(
     aim: float,
 ) -> Equilibrium:
     """Run the augmented Lagrangian to the tolerances, or until it stalls or runs out."""
-    first, stretched, firmer = _first_penalty(problem, load), np.inf, 1.0
+    first, stretched, firmer = first_penalty(problem.loop, load), np.inf, 1.0
     iterate, at_rest, carried = _Iterate(shape, tensions, _FIRST_TOLERANCE, 0), True, 0
     while True:
         heed()
@@ -117,8 +118,12 @@ def descend(
             shape = problem.film.prepared(shape)
             iterate, at_rest = replace(iterate, shape=shape), True
             near = problem.length_error(shape) <= _NEAR
-            penalty = firmer * first * (method.stiffer if near else 1.0)
-            forces, tension, scale = _forces(problem, iterate, load, penalty)
+            own = _own_forces(problem, shape, load)
+            penalty = firmer * first
+            if near:
+                bearable = bearable_penalty(problem.loop, shape, own, method.residual)
+                penalty = max(penalty, min(penalty * method.stiffer, bearable))
+            forces, tension, scale = _forces(problem, iterate, own, penalty)
         except LinAlgError:  # no film, or no loop
             return _record(problem, iterate, load, Status.STALLED)
         if scale == 0.0 or problem.pinched(shape):  # a point; a soap film without width
@@ -126,9 +131,10 @@ def descend(
         residual = float(np.abs(forces).max()) / scale
         if not np.isfinite(residual):
             return _record(problem, iterate, load, Status.NOT_FINITE)
-        if iterate.idle >= (_IDLE if residual <= method.residual else _IDLE_AT_ROUNDING):
+        if iterate.idle >= _IDLE:
             found = _given_up(problem, iterate, load, Status.STALLED)
-            if found.converged:
+            balanced = found.converged and residual <= method.residual
+            if balanced or iterate.idle >= _IDLE_AT_ROUNDING:
                 return found
         if residual <= iterate.tolerance:
             iterate = replace(
@@ -145,7 +151,7 @@ def descend(
             # Tensions that chase a loop to and fro get nowhere: hold it faster.
             if stretched > max(_STRETCHED, 0.5 * before):
                 penalty, firmer = 4 * penalty, 4 * firmer
-            forces, tension, scale = _forces(problem, iterate, load, penalty)
+            forces, tension, scale = _forces(problem, iterate, own, penalty)
         if iterate.iterations >= budget:
             return _given_up(problem, iterate, load, Status.ITERATION_LIMIT)
         after = _minimise(problem, method, iterate, load, penalty, forces, tension, scale)
@@ -163,17 +169,6 @@ def descend(
             return _given_up(problem, iterate, load, Status.UNRESOLVED)
 
 
-def _first_penalty(problem: Problem, load: float) -> float:
-    """Return the stretching stiffness mu, alpha / L^2.
-
-    Its stiffest mode is as stiff as the loop's in bending, 4 mu / s = 16 / s^3: softer lets
-    lengths drift, stiffer slows the iteration down. But film and bending are to be weak
-    against it, load and 4 pi^2 against mu / 8: else they would draw the loop to a point.
-    """
-    even = 4.0 / float(np.mean(problem.loop.rest_lengths)) ** 2
-    return max(even, 10.0 * load, _STIFFER_THAN_BENDING)
-
-
 def _film_at_rest(problem: Problem, shape: Shape) -> bool:
     """Whether the film balances by its own measure, however little it pulls.
 
@@ -184,18 +179,19 @@ def _film_at_rest(problem: Problem, shape: Shape) -> bool:
     return bool(inside <= _FILM_BALANCE * film.max())
 
 
+def _own_forces(problem: Problem, shape: Shape, load: float) -> list[FloatArray]:
+    """Return grad E (n_v, 3) by parts: bending, film, what else the loop feels."""
+    film = load * problem.film.forces(shape)
+    return [problem.bending_energy(shape)[1], film, *problem.loop_forces(shape)]
+
+
 def _forces(
-    problem: Problem, iterate: _Iterate, load: float, penalty: float
+    problem: Problem, iterate: _Iterate, own: list[FloatArray], penalty: float
 ) -> tuple[FloatArray, FloatArray, float]:
     """Return grad A (n_v, 3), the tensions lambda + mu c / s (n_b,), the largest force."""
     shape = iterate.shape
     tension = _tension(problem, iterate, penalty)
-    parts = [
-        problem.bending_energy(shape)[1],
-        load * problem.film.forces(shape),
-        problem.tension_force(shape, tension),
-        *problem.loop_forces(shape),
-    ]
+    parts = [*own, problem.tension_force(shape, tension)]
     scale = max(float(np.abs(part).max()) for part in parts)
     total = problem.without_sliding(shape, sum(parts[1:], start=parts[0]))
     return total, tension, scale
@@ -226,6 +222,7 @@ def _minimise(
     base = space.lift(forces)
     gradient = np.empty_like(base)
     goal = iterate.tolerance * scale
+    nothing = max(_NOTHING, float(np.linalg.norm(tension)) * rounded(shape))
     last = reached = np.zeros(variables.size)
     moved, value, change = np.zeros_like(base), 0.0, 0.0
     idle = _IDLE
@@ -276,7 +273,7 @@ def _minimise(
         iterate,
         shape=space.reached(variables.displacement(reached)),
         iterations=iterate.iterations + max(int(found.nit), 1),
-        idle=iterate.idle + idle if change > -_NOTHING else 0,
+        idle=iterate.idle + idle if change > -nothing else 0,
     )
 
 

@@ -17,10 +17,12 @@ def _angle(first: FloatArray, then: FloatArray, axis: FloatArray) -> float:
 
 
 @pytest.mark.parametrize("link", [0.0, 0.25, 1.0, -1.7])
-def test_round_the_loop_a_rod_turns_by_its_link(link: float) -> None:
+def test_round_the_loop_a_rod_turns_by_its_link(
+    link: float, rng: np.random.Generator
+) -> None:
     """White: twist and writhe make link, whatever the loop."""
     for _ in range(3):
-        x = tangle(60)
+        x = tangle(60, rng=rng)
         edges = differences(x)
         lengths = np.linalg.norm(edges, axis=1)
         tangents = edges / lengths[:, None]
@@ -37,8 +39,8 @@ def test_round_the_loop_a_rod_turns_by_its_link(link: float) -> None:
         assert whole == pytest.approx(round(whole), abs=1e-9)
 
 
-def test_twist_is_even_along_the_rod() -> None:
-    x, link = tangle(60), 1.3
+def test_twist_is_even_along_the_rod(rng: np.random.Generator) -> None:
+    x, link = tangle(60, rng=rng), 1.3
     edges = differences(x)
     lengths = np.linalg.norm(edges, axis=1)
     tangents, found = edges / lengths[:, None], directors(x, link - writhe(x))

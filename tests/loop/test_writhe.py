@@ -12,10 +12,8 @@ from eulerplateau.loop.loop import differences
 from eulerplateau.loop.writhe_kernels import tangent_area, writhe
 from tests.helpers import twins
 
-RNG = np.random.default_rng(4)
 
-
-def tangle(n: int, size: float = 0.4, rng: np.random.Generator = RNG) -> FloatArray:
+def tangle(n: int, size: float = 0.4, *, rng: np.random.Generator) -> FloatArray:
     """A round loop with a few random harmonics, in no plane."""
     t = 2 * np.pi * np.arange(n) / n
     x = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
@@ -45,9 +43,11 @@ def trefoil(n: int) -> tuple[FloatArray, float]:
     return curve(2 * np.pi * np.arange(n) / n, 0), turns
 
 
-def test_the_writhe_is_the_gauss_integral_over_all_pairs_of_edges() -> None:
+def test_the_writhe_is_the_gauss_integral_over_all_pairs_of_edges(
+    rng: np.random.Generator,
+) -> None:
     for _ in range(3):
-        x = tangle(9)
+        x = tangle(9, rng=rng)
         assert writhe(x) == pytest.approx(twins.writhe(x), abs=1e-11)
 
 
@@ -69,11 +69,13 @@ def test_a_flat_eight_with_a_right_handed_crossing_writhes_once() -> None:
     assert writhe(eight) == pytest.approx(1, abs=1e-5)
 
 
-def test_the_writhe_is_nought_in_a_plane_odd_under_reflection_and_free_of_places() -> None:
-    x = tangle(24)
+def test_the_writhe_is_nought_in_a_plane_odd_under_reflection_and_free_of_places(
+    rng: np.random.Generator,
+) -> None:
+    x = tangle(24, rng=rng)
     flat = x * [1, 1, 0]
     assert abs(writhe(flat)) < 1e-14
-    turn, _ = np.linalg.qr(RNG.standard_normal((3, 3)))
+    turn, _ = np.linalg.qr(rng.standard_normal((3, 3)))
     turn *= np.sign(np.linalg.det(turn))
     expected = pytest.approx(writhe(x), abs=1e-12)
     assert writhe(3.7 * x @ turn + [1, 2, 3]) == expected
@@ -82,10 +84,12 @@ def test_the_writhe_is_nought_in_a_plane_odd_under_reflection_and_free_of_places
     assert -writhe(x * [1, 1, -1]) == expected
 
 
-def test_what_the_tangents_gain_in_area_is_what_the_writhe_gains() -> None:
+def test_what_the_tangents_gain_in_area_is_what_the_writhe_gains(
+    rng: np.random.Generator,
+) -> None:
     for _ in range(5):
-        x = tangle(40)
-        after = x + 0.002 * RNG.standard_normal(x.shape)
+        x = tangle(40, rng=rng)
+        after = x + 0.002 * rng.standard_normal(x.shape)
         gained = tangent_area(differences(x), differences(after)) / (2 * np.pi)
         assert gained == pytest.approx(writhe(after) - writhe(x), abs=1e-12)
 
@@ -114,9 +118,11 @@ def test_force_and_hessian_of_the_twist_have_taylor_slopes_of_2() -> None:
     np.testing.assert_allclose(hessian, hessian.T, atol=1e-13 * np.abs(hessian).max())
 
 
-def test_the_change_of_the_twisting_energy_keeps_its_digits() -> None:
-    x = tangle(30)
-    twist, p = twist_of(x), RNG.standard_normal(x.shape)
+def test_the_change_of_the_twisting_energy_keeps_its_digits(
+    rng: np.random.Generator,
+) -> None:
+    x = tangle(30, rng=rng)
+    twist, p = twist_of(x), rng.standard_normal(x.shape)
     p /= np.linalg.norm(p)
     assert twist.change(x, 0.01 * p) == pytest.approx(
         twist.energy(x + 0.01 * p) - twist.energy(x), rel=1e-10
@@ -126,8 +132,10 @@ def test_the_change_of_the_twisting_energy_keeps_its_digits() -> None:
 
 
 @pytest.mark.parametrize("parameter", ["link", "twist_ratio"])
-def test_the_rate_of_the_force_by_link_and_ratio_is_its_difference(parameter: str) -> None:
-    x = tangle(15)
+def test_the_rate_of_the_force_by_link_and_ratio_is_its_difference(
+    parameter: str, rng: np.random.Generator
+) -> None:
+    x = tangle(15, rng=rng)
     loop = twist_of(x).loop
 
     def force(step: float) -> FloatArray:

@@ -259,16 +259,38 @@ def test_iterations_grow_no_faster_than_the_root_of_the_number_of_vertices(
 
 
 @pytest.mark.slow
-def test_forces_that_rounding_leaves_do_not_keep_it_going() -> None:
-    """Those of 324 edges are larger here than it aims at, and smaller than they need be."""
+@pytest.mark.parametrize("vertices", [7500, 50_000])
+def test_lengths_of_fine_loops_are_held_no_faster_than_rounding_bears(
+    vertices: int,
+) -> None:
+    """Of 324 and 844 edges: held faster, rounding alone would be too large a force."""
     polygon = {"kind": "stretched-hexagon", "factor": 2.0}
-    mesh = generate(validate({"polygon": polygon, "vertices": 7500}, MeshSpec, "mesh"))
+    mesh = generate(validate({"polygon": polygon, "vertices": vertices}, MeshSpec, "mesh"))
     problem = Problem(mesh)
     found = solving.solve(problem, 700.0, displaced(mesh, 1e-3, 1), solver="cg")
     assert found.status is Status.CONVERGED
+    assert found.residual <= conjugate_gradient.CONDITIONED.residual
     assert found.iterations < 1000
     exact = solving.solve(problem, 700.0, found)
     assert found.energy == pytest.approx(exact.energy, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("away", "status"), [(1e5, Status.CONVERGED), (1e8, Status.STALLED)]
+)
+def test_where_rounding_leaves_forces_too_large_it_stalls_and_does_not_go_on(
+    coarse: Disk, coarse_problem: Problem, away: float, status: Status
+) -> None:
+    """Far from the origin: lengths are rounded by more than they may be wrong, or less."""
+    start = shapes.crumpled(coarse, 1e-3) + away
+    found = solving.solve(coarse_problem, 300.0, start, solver="cg")
+    assert found.status is status
+    assert (found.length_error <= LENGTH_TOLERANCE) == found.converged
+    assert found.iterations < 500
+    exact = solving.solve(coarse_problem, 300.0)
+    excess = coarse_problem.loop.constraint(found.shape.x_loop)
+    unstretched = found.energy + found.tensions @ excess  # to first order
+    assert unstretched == pytest.approx(exact.energy, rel=1e-8)
 
 
 def test_kick_is_no_rigid_motion_it_bends_the_middle_of_the_film(oval: Disk) -> None:

@@ -101,7 +101,7 @@ class Tiling:
     loop: IntArray
     interior: IntArray
     # Where the entries of the film and its loop go, once that is known (normal_moves.py).
-    with_loop: list[tuple[IntArray, Elimination]] = field(
+    with_loop: list[tuple[IntArray, int, Elimination]] = field(
         default_factory=list, init=False, repr=False, compare=False
     )
 

@@ -142,9 +142,11 @@ class FilmModel:
 
         shift : what is added to all eigenvalues of the second variation
         """
-        chain = self.stiffness.chain.copy()
-        chain[0] += shift * self.energy.weights
-        stiffness = replace(self.stiffness, chain=chain)
+        stiffness = self.stiffness
+        if shift:
+            chain = stiffness.chain.copy()
+            chain[0] += shift * self.energy.weights
+            stiffness = replace(stiffness, chain=chain)
         try:
             return self.film.with_loop(self.x, self.load, stiffness, strip)
         except LinAlgError:

@@ -141,7 +141,7 @@ class Tiling:
 
         None where one turns from these normals (n_t, 3) by that cosine, or has no area.
         """
-        arrays, gradient = self._unmeasured(), np.zeros_like(x)
+        arrays, gradient = self._unmeasured(), np.zeros((self.n_v, 3))
         known = x, self.triangles, normals, cosine
         if not area_kernels.stand(*known, *arrays, gradient):
             return None

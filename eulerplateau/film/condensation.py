@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -71,12 +72,13 @@ class Condensation:
     ) -> tuple[IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray]:
         """All parts as arrays, for solve_kernels.py; the parts are then views of these."""
         parts = list(self._parts)
-        counts = np.array([len(part.around) for part in parts], dtype=np.int64)
+        counts = [len(part.around) for part in parts]
         starts = np.array([part.start for part in parts], dtype=np.int64)
         stops = np.array([part.stop for part in parts], dtype=np.int64)
-        sizes = (stops - starts) * (stops - starts + counts)
-        around = [part.around for part in parts]
-        data, filled = np.empty(sizes.sum()), 0
+        own = (stops - starts).tolist()
+        sizes = [n * (n + m) for n, m in zip(own, counts, strict=True)]
+        around = [np.zeros(0, dtype=np.int64), *(part.around for part in parts)]
+        data, filled = np.empty(sum(sizes)), 0
         object.__setattr__(self, "_parts", ())  # so that they go as they are copied
         for number, part in enumerate(parts):
             views = []
@@ -86,15 +88,9 @@ class Condensation:
                 views[-1][...] = piece
             parts[number] = Part(part.start, part.stop, part.around, views[1], views[0])
         object.__setattr__(self, "_parts", tuple(parts))
-        none = [np.zeros(0, dtype=np.int64)]
-        return (
-            starts,
-            stops,
-            np.append(0, np.cumsum(counts)),
-            np.concatenate(none + around),
-            np.cumsum(sizes) - sizes,
-            data,
-        )
+        pointer = np.array([0, *accumulate(counts)], dtype=np.int64)
+        first = np.array([0, *accumulate(sizes)], dtype=np.int64)[:-1]
+        return starts, stops, pointer, np.concatenate(around), first, data
 
     def carry(self, forces: FloatArray) -> FloatArray:
         """Return f_b - L_bi L_ii^-1 f_i (n_b, m): what forces (n, m) come to on the loop.

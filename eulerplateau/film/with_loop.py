@@ -17,8 +17,9 @@ from eulerplateau.film.dissection import dissect, graph_of
 from eulerplateau.film.elimination import Elimination, plan
 
 _AXES = np.arange(3)
-# Nodes of a piece: LAPACK solves with an indefinite block more slowly than with another.
-_LARGEST = 48
+# Nodes of a piece: LAPACK solves with an indefinite block more slowly than with another. Of
+# films of few nodes smaller ones are faster; of larger ones they are too many.
+_LARGEST, _SMALLER, _FEW = 48, 24, 512
 # Bending couples a vertex of the loop to the two on either side.
 _REACH = 2
 
@@ -138,7 +139,8 @@ class FilmWithLoop:
         row = np.concatenate([self._node(self.row), *(_REACH * [loop]), *reach])
         column = np.concatenate([self._node(self.column), *reach, *(_REACH * [loop])])
         graph = graph_of(row, column, n_i + n_b)
-        pieces = dissect(graph, loop, np.arange(n_i + n_b), _LARGEST)
+        largest = _SMALLER if n_i + n_b <= _FEW else _LARGEST
+        pieces = dissect(graph, loop, np.arange(n_i + n_b), largest)
         owner = np.empty(n_i + n_b, dtype=np.int64)
         for number, piece in enumerate(pieces):
             owner[piece] = number

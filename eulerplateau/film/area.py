@@ -212,9 +212,7 @@ class AreaOfLoop:
         strip : whether a strip of the film follows the loop. Raises LinAlgError if a pivot
         vanishes, or where there is no film.
         """
-        found = self.local.relax(x_loop)
-        self.local.keeps_inverse(found)
-        return self.local.variations.with_loop(found.second, load, loop, strip)
+        return self.local.with_loop(self.local.relax(x_loop), load, loop, strip)
 
     def flat_at(self, x_loop: FloatArray) -> bool:
         """Return whether the film on this loop lies in a plane."""

@@ -15,8 +15,9 @@ from eulerplateau.film.normal_moves import NormalHeights
 from eulerplateau.film.tiling import TriangleGeometry
 
 _STEPS = 30
-# Part of the error that a step with an old factorised Hessian may leave.
-_SLOW = 0.1
+# Part of the error that a step with an old factorised Hessian may leave; of films of few
+# vertices inside less, since a new one costs them no more than a step or two.
+_SLOW, _FEW, _SLOW_OF_FEW = 0.1, 512, 0.01
 # Cosine of the tilt of normals up to which a film counts as being where its reference is.
 _NO_TILT = 1 - 1e-10
 
@@ -43,13 +44,14 @@ class HeightsFilm(LocalFilm):
     def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
         variations = self.variations
         inverse = self._known()
+        slow = _SLOW_OF_FEW if variations.size <= _FEW else _SLOW
         error, fresh = np.inf, False
         for _ in range(_STEPS):
             force = variations.work(state.gradient)
             before, error = error, float(np.abs(force).max(initial=0.0))
             if is_rest(self.sides, error, before, fresh):
                 return state
-            fresh = inverse is None or error > _SLOW * before
+            fresh = inverse is None or error > slow * before
             if inverse is None or fresh:
                 inverse = variations.stiffness(state.sides)
                 self._inverse[:] = [inverse]

@@ -37,8 +37,10 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.film import area_kernels
 from eulerplateau.film.condensation import Condensation
 from eulerplateau.film.harmonic import Follower
+from eulerplateau.film.indefinite import IndefiniteFactor
 from eulerplateau.film.normal_moves import InteriorUnknowns
 from eulerplateau.film.tiling import LIMITS, Tiling, TriangleGeometry
+from eulerplateau.film.with_loop import LoopStiffness
 
 # Parts of a predicted change that are tried, as long as triangles fold over.
 _PARTS = 1.0, 0.5, 0.25
@@ -162,6 +164,10 @@ class LocalFilm(ABC):
     )
     # The last interior that was factorised on the way to rest, kept for films near by.
     _inverse: list[Condensation] = field(default_factory=list, init=False, repr=False)
+    # The last film that was factorised with its loop: its load and strip, the loop's chain.
+    _factors: list[tuple[FilmAtRest, tuple[float, bool], FloatArray, IndefiniteFactor]] = (
+        field(default_factory=list, init=False, repr=False)
+    )
 
     @property
     @abstractmethod
@@ -254,10 +260,24 @@ class LocalFilm(ABC):
             raise LinAlgError("a triangle of the film has folded over")
         return state
 
-    def keeps_inverse(self, found: FilmAtRest) -> None:
-        """Keep a factorised interior for films near by: this one's if there is none."""
+    def with_loop(
+        self, found: FilmAtRest, load: float, loop: LoopStiffness, strip: bool
+    ) -> IndefiniteFactor:
+        """Factorise `load` times the Hessian of a film with what its loop adds.
+
+        See AreaOfLoop.with_loop. The last is kept: what is solved for first is asked for a
+        spectrum, and corrected, afterwards. So is a factorised interior for films near by.
+        """
         if not self._inverse:
             self._inverse.append(found.inside)
+        for known, asked, chain, factor in self._factors:
+            same = known is found and asked == (load, strip)
+            if same and np.array_equal(chain, loop.chain):
+                return factor
+        self._factors.clear()
+        factor = self.variations.with_loop(found.second, load, loop, strip)
+        self._factors.append((found, (load, strip), loop.chain, factor))
+        return factor
 
     def _known(self) -> Condensation | None:
         """Return a factorised interior of the last film, or of one near it, if there is."""

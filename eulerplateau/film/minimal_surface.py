@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import LinAlgError
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, cross
 from eulerplateau.film.flips import delaunay_flips
 from eulerplateau.film.free_moves import ROUNDING, FreeInterior, smaller
 from eulerplateau.film.tiling import LIMITS, Tiling
@@ -28,7 +28,7 @@ _FLAT = 1e-6
 def is_flat(tiling: Tiling, x: FloatArray) -> bool:
     """Return whether a film (n_v, 3) lies in a plane."""
     normals = tiling.sides(x).normals
-    tilted = np.cross(normals, normals.mean(axis=0))
+    tilted = cross(normals, normals.mean(axis=0))
     return float(np.abs(tilted).max(initial=0.0)) < _FLAT
 
 

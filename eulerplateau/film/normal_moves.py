@@ -97,8 +97,7 @@ class NormalHeights:
 
     def work(self, gradient: FloatArray) -> FloatArray:
         """Return n . g (n_i,)."""
-        inside: FloatArray = gradient[self.tiling.interior]
-        along: FloatArray = np.einsum("ic,ic->i", inside, self._inside)
+        along: FloatArray = np.vecdot(gradient[self.tiling.interior], self._inside)
         return along
 
     @cached_property

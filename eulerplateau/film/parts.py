@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 from numpy.linalg import LinAlgError
@@ -60,28 +61,20 @@ class Parts:
 
 def parts_of(starts: list[int], stops: list[int], around: list[IntArray]) -> Parts:
     """Return the parts of these rows, their arrays yet to be filled in."""
-    begins, ends = np.array(starts, dtype=np.int64), np.array(stops, dtype=np.int64)
-    counts = np.array([len(rows) for rows in around], dtype=np.int64)
-    sizes = (ends - begins) * (ends - begins + counts)
-    first, data = np.cumsum(sizes) - sizes, np.empty(sizes.sum())
+    own = [stop - start for start, stop in zip(starts, stops, strict=True)]
+    counts = [len(rows) for rows in around]
+    first = [0, *accumulate(n * (n + m) for n, m in zip(own, counts, strict=True))]
+    data = np.empty(first.pop())
     each = []
-    for start, stop, rows, at in zip(starts, stops, around, first.tolist(), strict=True):
-        n = stop - start
+    for start, n, rows, at in zip(starts, own, around, first, strict=True):
         below = at + n * n
         factor = data[at:below].reshape((n, n), order="F")
         half = data[below : below + len(rows) * n].reshape((len(rows), n), order="F")
-        each.append(Part(start, stop, rows, half, factor))
-    return Parts(
-        tuple(each),
-        (
-            begins,
-            ends,
-            np.append(0, np.cumsum(counts)),
-            np.concatenate([np.zeros(0, dtype=np.int64), *around]),
-            first,
-            data,
-        ),
-    )
+        each.append(Part(start, start + n, rows, half, factor))
+    numbers = (starts, stops, [0, *accumulate(counts)], first)
+    begins, ends, pointer, places = (np.array(n, dtype=np.int64) for n in numbers)
+    beside = np.concatenate([np.zeros(0, dtype=np.int64), *around])
+    return Parts(tuple(each), (begins, ends, pointer, beside, places, data))
 
 
 def eliminate(block: FloatArray, own: int) -> tuple[FloatArray, FloatArray, FloatArray]:

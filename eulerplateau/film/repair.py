@@ -27,18 +27,14 @@ def carry_along(
     In steps short enough that no triangle folds over, with a repair where they get thin.
     """
     before, after = tiling.sides(x), follow_loop(tiling, x, x_loop)
-    moved = tiling.sides(after)
-    turned = (before.normals * moved.normals).sum(axis=1)
-    sound = bool((moved.areas > 0).all() and (turned > LIMITS.carried).all())
-    if not sound and halvings:
+    standing = tiling.standing(after, before.normals, LIMITS.carried)
+    if standing is None and halvings:
         middle = 0.5 * (x[tiling.loop] + x_loop)
         tiling, x = carry_along(tiling, x, middle, halvings - 1)
         return carry_along(tiling, x, x_loop, halvings - 1)
-    return (
-        mend_triangles(tiling, after)
-        if moved.smallest_angle < LIMITS.thin
-        else (tiling, after)
-    )
+    moved = tiling.sides(after) if standing is None else standing[0]
+    thin = moved.smallest_angle < LIMITS.thin
+    return mend_triangles(tiling, after) if thin else (tiling, after)
 
 
 def mend_triangles(

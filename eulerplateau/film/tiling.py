@@ -101,7 +101,7 @@ class Tiling:
     loop: IntArray
     interior: IntArray
     # Where the entries of the film and its loop go, once that is known (normal_moves.py).
-    with_loop: list[tuple[IntArray, Elimination]] = field(
+    with_loop: list[tuple[IntArray, int, Elimination]] = field(
         default_factory=list, init=False, repr=False, compare=False
     )
 
@@ -141,7 +141,7 @@ class Tiling:
 
         None where one turns from these normals (n_t, 3) by that cosine, or has no area.
         """
-        arrays, gradient = self._unmeasured(), np.zeros_like(x)
+        arrays, gradient = self._unmeasured(), np.zeros((self.n_v, 3))
         known = x, self.triangles, normals, cosine
         if not area_kernels.stand(*known, *arrays, gradient):
             return None

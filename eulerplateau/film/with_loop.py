@@ -17,8 +17,9 @@ from eulerplateau.film.dissection import dissect, graph_of
 from eulerplateau.film.elimination import Elimination, plan
 
 _AXES = np.arange(3)
-# Nodes of a piece: LAPACK solves with an indefinite block more slowly than with another.
-_LARGEST = 48
+# Nodes of a piece: LAPACK solves with an indefinite block more slowly than with another. Of
+# films of few nodes smaller ones are faster; of larger ones they are too many.
+_LARGEST, _SMALLER, _FEW = 48, 24, 512
 # Bending couples a vertex of the loop to the two on either side.
 _REACH = 2
 
@@ -63,31 +64,33 @@ class LoopStiffness:
 
     def places(self, first: int) -> tuple[IntArray, IntArray]:
         """Return rows and columns (k,) of the entries, of unknowns from `first` on."""
-        n = self.chain.shape[1]
+        n, held = self.chain.shape[1], self.held.shape[1]
+        # A column for each coordinate of each vertex, and of those after it.
         v = np.arange(n)
-        # A column for each coordinate of each vertex.
-        at = first + 3 * v[:, None] + _AXES
-        row, column = [], []
-
-        def add(one: IntArray, other: IntArray) -> None:
-            row.append(one.ravel())
-            column.append(other.ravel())
-
-        add(at, at)
-        for step in range(1, _REACH + 1):
-            add(at, after := np.roll(at, -step, axis=0))
-            add(after, at)
-        tension = first + 3 * n + np.repeat(v[:, None], 3, axis=1)
-        for step in range(2):
-            add(tension, after := np.roll(at, -step, axis=0))
-            add(after, tension)
-        last = first + 4 * n
-        for number in range(self.held.shape[1]):
-            add(at, np.full_like(at, last + number))
-        springs = last + self.held.shape[1] + np.arange(3 * len(self.pinned))
-        add(at[self.pinned].ravel(), springs)
-        add(springs, springs)
-        add(at[self.pinned], at[self.pinned])
+        at, after, second = (
+            (first + 3 * ((v + step) % n)[:, None] + _AXES).ravel()
+            for step in range(_REACH + 1)
+        )
+        tension = first + 3 * n + np.repeat(v, 3)
+        motions = first + 4 * n + np.arange(held)
+        springs = first + 4 * n + held + np.arange(3 * len(self.pinned))
+        pinned = (first + 3 * self.pinned[:, None] + _AXES).ravel()
+        pairs = (
+            (at, at),
+            (at, after),
+            (after, at),
+            (at, second),
+            (second, at),
+            (tension, at),
+            (at, tension),
+            (tension, after),
+            (after, tension),
+            (np.tile(at, held), np.repeat(motions, 3 * n)),
+            (pinned, springs),
+            (springs, springs),
+            (pinned, pinned),
+        )
+        row, column = zip(*pairs, strict=True)
         return np.concatenate(row), np.concatenate(column)
 
 
@@ -106,7 +109,7 @@ class FilmWithLoop:
     n_b: int
     row: IntArray
     column: IntArray
-    known: list[tuple[IntArray, Elimination]]
+    known: list[tuple[IntArray, int, Elimination]]
 
     def assemble(
         self, film: FloatArray, loop: LoopStiffness
@@ -116,16 +119,15 @@ class FilmWithLoop:
 
     def _elimination(self, loop: LoopStiffness) -> Elimination:
         """Return it, made once as long as the same vertices are pinned and as much held."""
-        key = np.append(loop.pinned, loop.n_held)
-        for known, found in self.known:
-            if np.array_equal(known, key):
+        for pinned, n_held, found in self.known:
+            if n_held == loop.n_held and np.array_equal(pinned, loop.pinned):
                 return found
         pieces, (row, column) = self._pieces(), loop.places(self.n_i)
         first = self.n_i + 4 * self.n_b
         kept = np.arange(first, first + loop.n_held)
         whole = np.concatenate([self.row, row]), np.concatenate([self.column, column])
         found = plan(*whole, pieces, kept)
-        self.known[:] = [(key, found)]
+        self.known[:] = [(loop.pinned, loop.n_held, found)]
         return found
 
     def _pieces(self) -> list[IntArray]:
@@ -137,7 +139,8 @@ class FilmWithLoop:
         row = np.concatenate([self._node(self.row), *(_REACH * [loop]), *reach])
         column = np.concatenate([self._node(self.column), *reach, *(_REACH * [loop])])
         graph = graph_of(row, column, n_i + n_b)
-        pieces = dissect(graph, loop, np.arange(n_i + n_b), _LARGEST)
+        largest = _SMALLER if n_i + n_b <= _FEW else _LARGEST
+        pieces = dissect(graph, loop, np.arange(n_i + n_b), largest)
         owner = np.empty(n_i + n_b, dtype=np.int64)
         for number, piece in enumerate(pieces):
             owner[piece] = number

@@ -16,6 +16,7 @@ from eulerplateau.loop.turns import EdgeTurns, LengthMetric, edge_turns
 _PROJECTION_STEPS = 30
 # Above this ratio of the longest to the shortest edge, edges are turned one by one.
 _UNEVEN = 5.0
+_EPS = float(np.finfo(np.float64).eps)
 # The gap, in units of L, at which a loop is closed; and how short u + g may become.
 _CLOSED = 1e-15
 _OPPOSITE = 1e-6
@@ -66,13 +67,12 @@ def project_lengths(
         return _turn_edges(loop, x_loop)
     mass = loop.mean_lengths[:, None]
     # What rounding of the positions leaves of a short edge's length.
-    eps = float(np.finfo(np.float64).eps)
-    rounding = 4 * eps * float(np.abs(x_loop).max() / loop.rest_lengths.min())
+    rounding = 4 * _EPS * float(np.abs(x_loop).max() / loop.rest_lengths.min())
     small = max(1e-12, rounding)
     x, error, s = x_loop, np.inf, loop.rest_lengths
     for _ in range(_PROJECTION_STEPS):
         chords = loop.chords(x)
-        lengths = np.sqrt(np.einsum("vd,vd->v", chords, chords))
+        lengths = np.sqrt(np.vecdot(chords, chords))
         # As Loop.constraint does, which would measure the edges once more.
         excess = (lengths - s) * (lengths + s) / (2 * s)
         previous, error = error, float(np.abs(excess / s).max())

@@ -57,9 +57,9 @@ class LengthMetric:
     def _factor(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """LAPACK's factor of the matrix without w w^T, then w, and w solved for."""
         u, ease = self.directions, 1 / self.means
-        squares = np.einsum("vd,vd->v", u, u)
+        squares = np.vecdot(u, u)
         diagonal = squares * (ease + np.concatenate([ease[1:], ease[:1]]))
-        beside = -np.einsum("vd,vd->v", u[1:], u[:-1]) * ease[1:]
+        beside = -np.vecdot(u[1:], u[:-1]) * ease[1:]
         corner = -float(u[-1] @ u[0]) * ease[0]
         border, root = np.zeros(len(u)), math.sqrt(abs(corner))
         first, last = float(squares[0]), float(squares[-1])

@@ -254,8 +254,8 @@ def _mixed(known: list[tuple[FloatArray, FloatArray]], weights: FloatArray) -> F
     z, step = known[-1]
     if len(known) == 1:
         return z + step
-    steps = np.stack([step - other for _, other in known[:-1]], axis=1)
-    ways = np.stack([z - other for other, _ in known[:-1]], axis=1)
+    steps = np.array([step - other for _, other in known[:-1]]).T
+    ways = np.array([z - other for other, _ in known[:-1]]).T
     k = len(weights)
     part = np.linalg.lstsq(weights[:, None] * steps[:k], weights * step[:k], rcond=1e-10)[0]
     mixed: FloatArray = z + step - (ways + steps) @ part

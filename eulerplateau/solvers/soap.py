@@ -18,7 +18,6 @@ from eulerplateau.solvers.models import DenseModels, Models
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
 from eulerplateau.solvers.renewal import Reached, elsewhere, near_shapes
-from eulerplateau.threads import one_thread
 
 # Loops of more vertices are not condensed: film and loop are looked at together.
 _DENSE = 16
@@ -47,19 +46,17 @@ def search(
         return None
     if smooth is not None and (tied := problem.tied_film()) is not None:
         start = tied.shape(x_loop)
-    # Blocks of a hundred rows: two threads would mostly wait for each other.
-    with one_thread():
-        if largest_turning(x_loop) < _CRUMPLED:
-            found = _near(problem, start, x_loop, load, max_iterations, observe)
-            if found is not None:
-                return found
-        tied = problem.tied_film()
-        if tied is None:
-            return None
-        models = quadratic_models(problem.loop, tied.energy(problem.loop, load))
-        state, _ = Descent(models, max_iterations).run(x_loop)
-        shape = tied.shape(state.model.x)
-        return _near(problem, shape, shape.x_loop, load, max_iterations, observe)
+    if largest_turning(x_loop) < _CRUMPLED:
+        found = _near(problem, start, x_loop, load, max_iterations, observe)
+        if found is not None:
+            return found
+    tied = problem.tied_film()
+    if tied is None:
+        return None
+    models = quadratic_models(problem.loop, tied.energy(problem.loop, load))
+    state, _ = Descent(models, max_iterations).run(x_loop)
+    shape = tied.shape(state.model.x)
+    return _near(problem, shape, shape.x_loop, load, max_iterations, observe)
 
 
 def _models(problem: Problem, film: FilmOfLoop, load: float) -> Models:

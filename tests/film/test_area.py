@@ -18,6 +18,7 @@ from eulerplateau.film.models import (
 from eulerplateau.film.tiling import Tiling, TriangleGeometry
 from eulerplateau.loop.kernels import area_beyond_linear
 from eulerplateau.mesh.disk import Disk
+from eulerplateau.mesh.triangles import smallest_angle
 from tests.helpers import shapes, soap_films, twins
 
 
@@ -212,6 +213,34 @@ def test_smallest_angle_of_known_triangles(oval: Disk) -> None:
     angle = sides_of(right, right.x).smallest_angle
     assert angle == pytest.approx(np.degrees(np.arctan(1e-3)), rel=1e-9)
     assert sides_of(oval, 0 * oval.x).smallest_angle == 0.0
+
+
+def test_smallest_angle_is_that_of_the_plain_formula(tiling: Tiling, x: FloatArray) -> None:
+    sides = tiling.sides(x)
+    assert sides.smallest_angle == pytest.approx(
+        smallest_angle(sides.edges, sides.areas), rel=1e-13
+    )
+
+
+def test_triangles_stand_unless_one_turns_too_far_or_has_no_area(
+    oval: Disk, tiling: Tiling
+) -> None:
+    flat = tiling.sides(oval.x).normals
+    # By 60 degrees, whose cosine is one half.
+    turned = oval.x.copy()
+    turned[:, 1:] = oval.x[:, 1:2] * [0.5, np.sqrt(0.75)]
+    standing = tiling.standing(turned, flat, 0.5 - 1e-12)
+    assert standing is not None
+    sides, gradient = standing
+    np.testing.assert_allclose(sides.areas, tiling.sides(turned).areas, rtol=1e-14)
+    np.testing.assert_allclose(gradient, tiling.gradient(tiling.sides(turned)), rtol=1e-14)
+    assert tiling.standing(turned, flat, 0.5 + 1e-12) is None
+    thin = oval.x.copy()
+    thin[tiling.triangles[0, 0]] = thin[tiling.triangles[0, 1]]
+    assert tiling.standing(thin, flat, 0.3) is None
+    lost = oval.x.copy()
+    lost[tiling.interior[0]] = np.nan
+    assert tiling.standing(lost, flat, 0.3) is None
 
 
 def test_triangles_without_area_have_no_normal_and_no_pull(

@@ -9,8 +9,13 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop.lengths import jacobian
 from eulerplateau.loop.loop import Loop
-from eulerplateau.loop.motions import rigid_motions, sliding
-from eulerplateau.loop.slide_kernels import SLIDES, keep_lengths, solve_lengths
+from eulerplateau.loop.motions import orthonormal_motions, rigid_motions, sliding
+from eulerplateau.loop.slide_kernels import (
+    SLIDES,
+    balance,
+    keep_lengths,
+    solve_lengths,
+)
 from eulerplateau.loop.turns import length_metric
 
 CASES = [(n, d) for n in (3, 4, 5, 60) for d in (2, 3)]
@@ -88,3 +93,51 @@ def test_sliding_is_the_tangent_without_what_stretches_and_turns(d: int) -> None
     slide = sliding(loop, x)
     assert slide is not None
     np.testing.assert_allclose(slide.ravel() * root, left / size, atol=1e-10)
+
+
+def bent_ellipse(d: int, n: int = 40) -> tuple[Loop, FloatArray]:
+    """A loop that keeps its uneven lengths and is no circle."""
+    turns = 2 * np.pi * np.arange(n) / n
+    x = np.stack([2 * np.cos(turns), np.sin(turns), np.cos(2 * turns)], axis=1)[:, :d]
+    return Loop(np.linalg.norm(np.roll(x, -1, axis=0) - x, axis=1)), x
+
+
+@pytest.mark.parametrize(("d", "rigid"), [(2, 3), (3, 6)])
+def test_motions_that_cost_nothing_are_rigid_ones_and_one_more_that_keeps_lengths(
+    d: int, rigid: int
+) -> None:
+    loop, x = bent_ellipse(d)
+    rows, mass, _ = dense(loop, x)
+    motions = orthonormal_motions(loop, x).reshape(-1, x.size)
+    assert len(motions) == rigid + 1
+    np.testing.assert_allclose(motions * mass @ motions.T, np.eye(rigid + 1), atol=1e-13)
+    np.testing.assert_allclose(rows @ motions.T, 0, atol=1e-13)
+    root = np.sqrt(mass)
+    spanned = np.linalg.qr(rigid_motions(x) * root[:, None])[0]
+    inside = spanned.T @ (motions[:rigid] * root).T
+    np.testing.assert_allclose(inside.T @ inside, np.eye(rigid), atol=1e-13)
+    # A circle only turns.
+    turns = 2 * np.pi * np.arange(12) / 12
+    circle = np.pad(np.stack([np.cos(turns), np.sin(turns)], axis=1), ((0, 0), (0, d - 2)))
+    even = Loop(np.full(12, 2 * np.sin(np.pi / 12)))
+    assert len(orthonormal_motions(even, circle)) == rigid
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_tensions_leave_least_of_a_force_and_nothing_along_motions(d: int) -> None:
+    loop, x = bent_ellipse(d)
+    rows, mass, _ = dense(loop, x)
+    motions = orthonormal_motions(loop, x)
+    force = np.random.default_rng(3).standard_normal(x.shape)
+    tensions, left = np.empty(len(x)), np.empty_like(x)
+    units, means = directions(loop, x), loop.mean_lengths
+    largest = balance(units, means, motions, force, tensions, left)
+    # Of linear least squares in the norm of M^-1, with both kinds of unknowns at once.
+    root = np.sqrt(mass)
+    free = motions.reshape(len(motions), -1).T * mass[:, None]
+    columns = np.hstack([rows.T, free]) / root[:, None]
+    shares = np.linalg.lstsq(columns, -force.ravel() / root)[0]
+    np.testing.assert_allclose(tensions, shares[: len(x)], atol=1e-10)
+    rest = force.ravel() + np.hstack([rows.T, free]) @ shares
+    np.testing.assert_allclose(left.ravel(), rest, atol=1e-10)
+    assert largest == pytest.approx(np.abs(rows.T @ tensions).max(), rel=1e-9)

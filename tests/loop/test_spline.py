@@ -29,17 +29,18 @@ def circle(n: int) -> SplineLoop:
     return Splines(np.diff(turns, append=2 * np.pi)).through(x)
 
 
-def loop() -> tuple[Splines, FloatArray]:
+def loop(n: int = 17) -> tuple[Splines, FloatArray]:
     """A rough loop in space, its parameter no arc length."""
-    lengths = np.random.default_rng(2).uniform(0.5, 1.5, 17)
+    lengths = np.random.default_rng(2).uniform(0.5, 1.5, n)
     turns = 2 * np.pi * np.cumsum(lengths) / lengths.sum()
     x = np.stack([np.cos(turns), np.sin(turns), 0.2 * np.sin(2 * turns)], axis=1)
     return Splines(lengths), x + 0.05 * np.random.default_rng(3).standard_normal(x.shape)
 
 
-def test_it_is_the_periodic_quintic_spline() -> None:
+@pytest.mark.parametrize("n", [8, 17])
+def test_it_is_the_periodic_quintic_spline(n: int) -> None:
     """As scipy makes it from B-splines, to rounding."""
-    splines, x = loop()
+    splines, x = loop(n)
     ends = np.concatenate([[0.0], np.cumsum(splines.lengths)])
     closed = np.concatenate([x, x[:1]])
     other = make_interp_spline(ends, closed, k=5, bc_type="periodic")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -110,6 +112,44 @@ def test_step_keeps_the_lengths_and_promises_what_the_dense_model_does(
     curved = -step.promised
     slope = 2 * step.promised
     assert half.promised == pytest.approx(part * slope + part**2 * curved)
+
+
+def test_near_rest_a_step_by_the_matrix_of_the_loop_before_is_as_good(
+    problem: Problem,
+) -> None:
+    found = solve(problem, STABLE, problem.disk.x * [1.05, 0.95, 1.0])
+    film = problem.film.of_loop(found.shape)
+    assert isinstance(film, AreaOfLoop)
+    models = FilmModels(film.energy(problem.loop, STABLE), film, problem.loop, STABLE)
+
+    def away(size: float) -> FilmModel:
+        moved = found.shape.x_loop + shapes.wave(problem.disk.n_b, size)
+        x = models.energy.constraint.project(moved)
+        assert x is not None
+        return models.at(x, models.at(x))
+
+    # Not farther from rest, where it would leave more than rounding.
+    assert away(1e-4).near is None
+    model = away(1e-12)
+    assert model.residual < 1e-8
+    before = models.at(found.shape.x_loop + 0)
+    lent, own = replace(model, near=before), replace(model, near=None)
+    step, expected = lent.newton_step(1.0), own.newton_step(1.0)
+    assert step is not None
+    assert expected is not None
+    assert "bare" not in lent.__dict__
+    np.testing.assert_allclose(step.moved, expected.moved, atol=1e-4 * expected.size)
+
+
+def test_what_is_factorised_is_kept_for_the_same_load_and_tensions(
+    problem: Problem,
+) -> None:
+    model = model_at(problem, problem.disk.x * [1.05, 0.95, 1.0], STABLE)
+    again = replace(model)
+    assert model.bare is again.bare
+    assert model.factorised(strip=True) is not model.bare
+    assert replace(model, load=BELOW).bare is not model.bare
+    assert replace(model, tensions=1.1 * model.tensions).bare is not model.bare
 
 
 def test_no_newton_step_leads_to_a_saddle(problem: Problem) -> None:

@@ -39,6 +39,8 @@ _SMALL, _FARTHER = 48, 0.1
 # first is as large as the softest bending mode of a bare loop.
 _FAR = 1e-2
 _SHIFT, _LARGER, _LARGEST = 2e4, 3.0, 1e12
+# The residual below which a step by the matrix of the loop before leaves but rounding.
+_AT_REST = 1e-8
 # Vectors of which the inverse's Krylov space is made, and how often it is applied.
 _BLOCK, _ROUNDS = 3, 12
 
@@ -49,6 +51,7 @@ class FilmModel:
 
     motions : (3 n, m) float, those that cost nothing, orthonormal
     unbalanced : (n, 3) float, what tensions do not balance of the force
+    near : the model of a loop so near that its factorised matrix will do for a step
     """
 
     film: AreaOfLoop
@@ -61,6 +64,7 @@ class FilmModel:
     unbalanced: FloatArray
     residual: float
     rounding: float
+    near: FilmModel | None = None
     # Steps that have been asked for, by the shift of the Hessian.
     _steps: dict[float, FloatArray | None] = field(
         default_factory=dict, init=False, repr=False
@@ -113,10 +117,11 @@ class FilmModel:
     def _newton(self, shift: float) -> FloatArray | None:
         """Return the step (n, 3) with a shifted Hessian; None where a way leads down."""
         if shift not in self._steps:
-            factor = self.factorised(strip=False, shift=shift) if shift else self.bare
+            model = self if self.near is None or shift else self.near
+            factor = model.factorised(strip=False, shift=shift) if shift else model.bare
             moved = None
-            if factor is not None and self.n_below(factor) == 0:
-                moved = self.moved(factor, -self.unbalanced.reshape(-1, 1))
+            if factor is not None and model.n_below(factor) == 0:
+                moved = model.moved(factor, -self.unbalanced.reshape(-1, 1))
             self._steps[shift] = None if moved is None else moved.reshape(self.x.shape)
         return self._steps[shift]
 
@@ -137,9 +142,11 @@ class FilmModel:
 
         shift : what is added to all eigenvalues of the second variation
         """
-        chain = self.stiffness.chain.copy()
-        chain[0] += shift * self.energy.weights
-        stiffness = replace(self.stiffness, chain=chain)
+        stiffness = self.stiffness
+        if shift:
+            chain = stiffness.chain.copy()
+            chain[0] += shift * self.energy.weights
+            stiffness = replace(stiffness, chain=chain)
         try:
             return self.film.with_loop(self.x, self.load, stiffness, strip)
         except LinAlgError:
@@ -222,6 +229,9 @@ class FilmModels(DenseModels):
             directions, means, motions, total, tensions, unbalanced
         )
         largest = max(pull, *(float(np.abs(force).max()) for force in forces))
+        residual, near = float(np.abs(unbalanced).max()) / largest, None
+        if residual < _AT_REST and isinstance(before, FilmModel):
+            near = before if before.near is None else before.near
         return FilmModel(
             film=self.film,
             load=self.load,
@@ -231,8 +241,9 @@ class FilmModels(DenseModels):
             motions=(means[:, None] * motions).reshape(len(motions), -1).T,
             tensions=tensions,
             unbalanced=unbalanced,
-            residual=float(np.abs(unbalanced).max()) / largest,
+            residual=residual,
             rounding=self.energy.rounding * float(np.abs(x).max()) / largest,
+            near=near,
         )
 
     def spectrum(self, model: Model) -> Stability:

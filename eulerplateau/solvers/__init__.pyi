@@ -1,6 +1,8 @@
+from .contact.everywhere import Everywhere as Everywhere
 from .contact.keeping import CLOSED as CLOSED, Keeping as Keeping, Touching as Touching
 from .contact.record import contacts_at as contacts_at
 from .contact.separation import separated as separated
+from .contact.sharpening import sharpened as sharpened
 from .correction import Corrected as Corrected, corrected as corrected
 from .descent import (
     Descent as Descent,

@@ -2,9 +2,8 @@
 
 A branch is followed with strands held once an edge where they lie along each other, so that
 it has few kinks; in between they overlap. What is recorded of it is the point next to
-that on which no gap is negative, by the exchange of solvers.contact.everywhere. There a
-minimum is sought; here forces balance with each set of places, across the branch, so that
-the parameter is free to move: at folds too, and whatever the index.
+that on which no gap is negative (exchange.py), across the branch: the parameter is free to
+move, so that there is one at folds too, and whatever the index.
 
 Loaded only for loops that have a diameter.
 """
@@ -13,27 +12,45 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import chain
-from typing import Protocol, cast
+from typing import Any, Protocol, cast
 
 import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.contact import Contact
 from eulerplateau.branches.control import Direction, StepControl
+from eulerplateau.branches.exchange import Held, without_overlaps
 from eulerplateau.branches.family import Family
-from eulerplateau.branches.gap_bounds import Touch
 from eulerplateau.branches.point import BranchPoint, correct, inner
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.interruption import heed
-from eulerplateau.loop import NO_GAPS, Gaps, from_one_strand
-from eulerplateau.solvers import Everywhere, Problem, TangentModel, Touching, sharpened
-from eulerplateau.solvers.descent import at_rounding
-from eulerplateau.solvers.equilibrium import SOFTEST_BENDING
+from eulerplateau.loop import NO_GAPS, Gaps, Loop, Strands
+from eulerplateau.solvers import TangentModel
 
-# Steps of the exchange; and times that a film is made anew until its forces balance.
-_STEPS, _MADE_ANEW = 60, 4
+# Times that a film is made anew until its forces balance; and how far a point may be moved,
+# in diameters: overlaps are small parts of one, and what lies farther is another film.
+_MADE_ANEW, _FAR = 4, 0.2
+
+
+class Closed(Protocol):
+    """Which gaps are closed: a contact.Contact."""
+
+    @property
+    def gaps(self) -> Gaps:
+        """They themselves."""
+
+    def strands_on(self, loop: Loop) -> Strands:
+        """Return the strands of a loop, whatever its diameter."""
+
+    def with_closed(self, gaps: Gaps) -> Closed:
+        """Return the same with other gaps closed."""
+
+
+class OnLoop(Protocol):
+    """What a family knows of its loop: a solvers.Problem."""
+
+    @property
+    def loop(self) -> Loop:
+        """The loop."""
 
 
 class FilmOnLoop(Family, Protocol):
@@ -44,13 +61,13 @@ class FilmOnLoop(Family, Protocol):
         """The film, good near one shape."""
 
     @property
-    def contact(self) -> object:
-        """Which gaps are closed: a Contact."""
+    def contact(self) -> Any:
+        """Which gaps are closed: Closed; nothing of a loop without a diameter."""
 
-    def at(self, value: float) -> tuple[Problem, float]:
+    def at(self, value: float) -> tuple[OnLoop, float]:
         """Return the problem and its load at a value of the parameter."""
 
-    def on(self, film: FilmOfLoop, contact: Contact | None = None) -> FilmOnLoop:
+    def on(self, film: FilmOfLoop, contact: Any = None) -> FilmOnLoop:
         """Return the family of another film, or with other gaps closed."""
 
     def rests(self, model: TangentModel, value: float) -> bool:
@@ -63,82 +80,34 @@ def apart_everywhere(point: BranchPoint, way: Direction) -> BranchPoint:
     It lies in the hyperplane through that normal to a way. The point itself if none is
     found.
     """
-    if _contact(point.family).touch.gaps.slides.all():
-        return point
-    return _Across(point, way).settled() or point
+    state = _at(point)
+    across = _Across(point, way, _FAR * state.strands.diameter)
+    found = without_overlaps(state, across.rest)
+    return point if found is None else found.point
 
 
 @dataclass(frozen=True)
-class _At(Touching):
+class _At(Held):
     """A point of a branch, as what an exchange changes."""
 
     point: BranchPoint = field(kw_only=True)
 
-    @property
-    def keeps(self) -> Everywhere:
-        """What keeps strands apart there."""
-        family = cast(FilmOnLoop, self.point.family)
-        problem, load = family.at(self.point.value)
-        strands = _contact(family).bounds(problem.loop).strands
-        return Everywhere(family.film.energy(problem.loop, load), strands, at_rounding)
-
 
 @dataclass(frozen=True)
 class _Across:
-    """The hyperplane through a point of a branch normal to a way."""
+    """The hyperplane through a point of a branch normal to a way, up to so far from it."""
 
     point: BranchPoint
     way: Direction
+    far: float
 
-    def settled(self) -> BranchPoint | None:
-        """Return the point in it at which no gap is negative, and nothing pulls."""
-        state, known = _at(self.point), NO_GAPS
-        for _ in range(_STEPS):
-            heed()
-            keeps = state.keeps
-            overlaps = keeps.overlaps(state)
-            if not len(overlaps) and keeps.pushes(state):
-                return self._sharpened(state).point
-            known = keeps.together(known, overlaps)
-            after = self._exchanged(state, known)
-            if after is None:
-                break
-            state = after
-        return None
+    def rest(self, x: FloatArray, gaps: Gaps) -> _At | None:
+        """Return the state in it at rest next to a loop (n, d), with gaps closed.
 
-    def _exchanged(self, state: _At, known: Gaps) -> _At | None:
-        """Return the state with what a step of the program closes, of all known."""
-        keeps, x = state.keeps, state.model.x
-        own = from_one_strand(keeps.strands.knots, state.gaps)
-        try:
-            led = keeps.closing(state, _stiff(state), keeps.together(own, known))
-        except LinAlgError:
-            return None
-        if led is None:
-            return None
-        near, gaps = led
-        # What closes in on a point may be two all the same.
-        sets = chain(keeps.fewer(keeps.points(x, gaps)), keeps.fewer(gaps))
-        found = (self._resting(state.point, near, some) for some in sets)
-        return next((each for each in found if each is not None), None)
-
-    def _sharpened(self, state: _At) -> _At:
-        """Return the state with places where strands are nearest, if they are found."""
-
-        def rest(x: FloatArray, gaps: Gaps) -> _At | None:
-            return self._resting(state.point, x, gaps)
-
-        return sharpened(state.keeps.strands, state, rest) or state
-
-    def _resting(self, near: BranchPoint, x: FloatArray, gaps: Gaps) -> _At | None:
-        """Return the state at which forces balance with gaps closed, next to a loop (n, d).
-
-        The film is made anew there until they do.
+        The film is made anew there until forces balance.
         """
-        family = cast(FilmOnLoop, near.family)
-        touch = Touch(gaps, ~gaps.slides)
-        family = family.on(family.film, replace(_contact(family), touch=touch))
-        value = near.value
+        family, value = _family(self.point), self.point.value
+        family = family.on(family.film, _closed(family).with_closed(gaps))
         for _ in range(_MADE_ANEW):
             found = self._corrected(family, x, value)
             if found is None or family.rests(found.model, found.value):
@@ -149,7 +118,8 @@ class _Across:
 
     def _corrected(self, family: Family, x: FloatArray, value: float) -> BranchPoint | None:
         """Return the point of a family in the hyperplane next to a loop; None if lost."""
-        point, control = self.point, self._control
+        point, unit = self.point, max(abs(self.point.value), 1.0)
+        control = StepControl((value, value), unit=unit, least=-np.inf)
         size = np.sqrt(inner(point.model, self.way, self.way, control))
         way = Direction(self.way.displacement / size, self.way.rate / size)
         off = Direction(x - point.x, value - point.value)
@@ -157,43 +127,33 @@ class _Across:
         x, value = x - back * way.displacement, value - back * way.rate
         with suppress(LinAlgError):
             found = correct(family, x, value, way, control)
-            # Overlaps are parts of a diameter: what lies farther is another film.
-            if found is not None and np.abs(found.x - point.x).max() < self._diameter:
+            if found is not None and np.abs(found.x - point.x).max() < self.far:
                 return replace(found, arclength=point.arclength)
         return None
-
-    @property
-    def _diameter(self) -> float:
-        return _at(self.point).keeps.strands.diameter
-
-    @property
-    def _control(self) -> StepControl:
-        value = self.point.value
-        return StepControl((value, value), unit=max(abs(value), 1.0), least=-np.inf)
 
 
 def _at(point: BranchPoint) -> _At:
     """Return a point of a branch as a state."""
-    gaps = _contact(point.family).touch.gaps
-    state = _At(point.model, gaps, NO_GAPS, radius=0.0, iteration=0, point=point)
-    gaps, _ = state.keeps.strands.at(point.x, gaps)
-    return replace(state, gaps=gaps)
+    family = _family(point)
+    problem, load = family.at(point.value)
+    strands = _closed(family).strands_on(problem.loop)
+    gaps, _ = strands.at(point.x, _closed(family).gaps)
+    return _At(
+        point.model,
+        gaps,
+        NO_GAPS,
+        radius=0.0,
+        iteration=0,
+        strands=strands,
+        energy=family.film.energy(problem.loop, load),
+        point=point,
+    )
 
 
-def _stiff(state: _At) -> TangentModel:
-    """Return the model of a state that keeps lengths only, stiff along its softest modes.
-
-    Closing gaps makes it move along none that is unstable, or about to be.
-    """
-    loose, (values, vectors) = state.keeps.loose(state), state.model.eigen
-    soft = values < SOFTEST_BENDING
-    modes = (state.model.displacement(each) for each in vectors[:, soft].T)
-    columns = np.array([loose.coefficients(mode) for mode in modes])
-    more = (SOFTEST_BENDING - values[soft])[:, None] * columns
-    return replace(loose, hessian=loose.hessian + columns.T @ more)
+def _family(point: BranchPoint) -> FilmOnLoop:
+    return cast(FilmOnLoop, point.family)
 
 
-def _contact(family: Family) -> Contact:
-    contact = cast(FilmOnLoop, family).contact
-    assert isinstance(contact, Contact)
-    return contact
+def _closed(family: FilmOnLoop) -> Closed:
+    closed: Closed = family.contact
+    return closed

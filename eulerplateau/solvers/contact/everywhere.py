@@ -12,10 +12,9 @@ it began with. Its own are as many, or fewer, and nearer to each other at the en
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -25,7 +24,6 @@ from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, LoopEnergy, Strands, from_one_strand, with_gaps_held
 from eulerplateau.solvers.contact.keeping import CHANGES, Touching
 from eulerplateau.solvers.contact.program import Program
-from eulerplateau.solvers.contact.sharpening import BESIDE, sharpened
 from eulerplateau.solvers.second_variation import (
     TangentModel,
     loosened,
@@ -34,8 +32,10 @@ from eulerplateau.solvers.second_variation import (
 )
 from eulerplateau.solvers.trust_region import FIRST_RADIUS
 
-# By which part of the diameter strands may overlap at places that are not held.
+# By which part of the diameter strands may overlap at places that are not held. One is not
+# held beside another that is nearer than this, in edges.
 OVERLAP = 1e-6
+_BESIDE = 0.02
 # Places no farther from each other than that, in edges, and from no others, are a point.
 _POINT = 0.3
 # Where a loop slides far along itself before it rests, its places wander as far.
@@ -46,8 +46,6 @@ _ASTRAY = 10.0
 # Places that cannot be closed at once hang together: of those within so many edges of one
 # before them, it alone is held.
 _TOGETHER = (0.0, 0.1, 0.3, 1.0)
-# Steps of Newton's method next to rest.
-_NEWTON = 12
 
 
 @dataclass(frozen=True)
@@ -64,17 +62,16 @@ class Everywhere:
         None if none is found.
         """
         state = replace(state, changes=CHANGES)
-        known = self.overlaps(state)
+        known = self._overlaps(state)
         found = self._from_one_strand(state) if len(known) else state
         for _ in range(_STEPS):
             heed()
             if found is None:
                 break
-            overlaps = self.overlaps(found)
-            if not len(overlaps) and self.at_rest(found.model) and self.pushes(found):
-                found = sharpened(self.strands, found, partial(self._rest, found)) or found
+            overlaps = self._overlaps(found)
+            if not len(overlaps) and self.at_rest(found.model) and self._pushes(found):
                 return found if stability(found.model).n_unstable == 0 else None
-            known = self.together(known, overlaps)
+            known = known.joined(overlaps[self.strands.unlike(overlaps, known, _BESIDE)])
             found = self._after_step(found, known, closes=len(overlaps) > 0)
         return None
 
@@ -90,19 +87,14 @@ class Everywhere:
             return state
         return self._at(state, state.model.x, gaps)
 
-    def pushes(self, state: Touching) -> bool:
-        """Return whether no strands that touch pull, but for what a force is off by."""
+    def _pushes(self, state: Touching) -> bool:
         return bool((state.forces >= -state.uncertain).all())
 
-    def overlaps(self, state: Touching) -> Gaps:
+    def _overlaps(self, state: Touching) -> Gaps:
         """Return the places where strands overlap most, that are not held."""
         low = self.strands.nearest(state.model.x, -OVERLAP * self.strands.diameter)
-        low = low[self.strands.unlike(low, state.gaps, BESIDE)]
+        low = low[self.strands.unlike(low, state.gaps, _BESIDE)]
         return from_one_strand(self.strands.knots, low, state.gaps[~state.gaps.slides])
-
-    def together(self, gaps: Gaps, others: Gaps) -> Gaps:
-        """Return gaps, and behind them those of others that are not beside them."""
-        return gaps.joined(others[self.strands.unlike(others, gaps, BESIDE)])
 
     def _after_step(self, state: Touching, known: Gaps, *, closes: bool) -> Touching | None:
         """Return the state after a step; if need be it closes gaps and lets go of others.
@@ -112,29 +104,25 @@ class Everywhere:
         x, gaps = state.model.x, state.gaps
         try:
             newton = state.model.newton_step(FIRST_RADIUS)
-            if newton is not None and not closes and self.pushes(state):
+            if newton is not None and not closes and self._pushes(state):
                 found = self._at(state, x + newton.moved, gaps)
                 most = _ASTRAY * state.model.residual
                 if found is not None and found.model.residual <= most:
                     return found
-            led = self.closing(state, self.loose(state), self.together(gaps, known))
-            return None if led is None else self._at(state, led[0], self.points(x, led[1]))
+            others = known[self.strands.unlike(known, gaps, _BESIDE)]
+            led = self._closing(state, gaps.joined(others))
+            return None if led is None else self._at(state, *led)
         except LinAlgError:
             return None
 
-    def loose(self, state: Touching) -> TangentModel:
-        """Return the model of a state that keeps lengths only."""
-        held = with_gaps_held(self.energy, self.strands, state.gaps)
-        return loosened(self.energy, held, state.model)
-
-    def closing(
-        self, state: Touching, loose: TangentModel, gaps: Gaps
-    ) -> tuple[FloatArray, Gaps] | None:
+    def _closing(self, state: Touching, gaps: Gaps) -> tuple[FloatArray, Gaps] | None:
         """Return the loop (n, d) that a step of the program leads to, and what it closes.
 
         gaps : those of the state, and others behind them
         """
         x, strands = state.model.x, self.strands
+        held = with_gaps_held(self.energy, strands, state.gaps)
+        loose = loosened(self.energy, held, state.model)
         gaps, widths = strands.at(x, gaps)
         rows = loose.coordinates.slope(strands.between(x, gaps).jacobian().T).T
         closed = np.arange(len(gaps)) < len(state.gaps)
@@ -143,9 +131,9 @@ class Everywhere:
         if found is None:
             return None
         coefficients, closes = found
-        return x + loose.displacement(coefficients), gaps[closes]
+        return x + loose.displacement(coefficients), self._points(x, gaps[closes])
 
-    def points(self, x: FloatArray, gaps: Gaps) -> Gaps:
+    def _points(self, x: FloatArray, gaps: Gaps) -> Gaps:
         """Return gaps with one that slides for places that close in on a point."""
         contact, chosen = self.strands.contacts(gaps), np.ones(len(gaps), dtype=bool)
         for number in np.unique(contact[~gaps.slides]):
@@ -161,29 +149,12 @@ class Everywhere:
 
     def _at(self, state: Touching, near: FloatArray, gaps: Gaps) -> Touching | None:
         """Return the state on the loop next to that, with gaps closed, or most of them."""
-        for some in self.fewer(gaps):
+        for edges in _TOGETHER:
             with suppress(LinAlgError):
+                some = gaps[self.strands.distinct(gaps, edges)]
                 found = self._closed(state, near, some)
                 if found is not None:
                     return found
-        return None
-
-    def fewer(self, gaps: Gaps) -> Iterator[Gaps]:
-        """Yield gaps, and fewer and fewer of those that may be one closed twice."""
-        for edges in _TOGETHER:
-            yield gaps[self.strands.distinct(gaps, edges)]
-
-    def _rest(self, state: Touching, x: FloatArray, gaps: Gaps) -> Touching | None:
-        """Return the state at rest next to a loop (n, d), with gaps closed."""
-        with suppress(LinAlgError):
-            found = self._closed(state, x, gaps)
-            for _ in range(_NEWTON):
-                if found is None or self.at_rest(found.model):
-                    return found
-                newton = found.model.newton_step(FIRST_RADIUS)
-                if newton is None:
-                    return None
-                found = self._closed(found, found.model.x + newton.moved, found.gaps)
         return None
 
     def _closed(self, state: Touching, near: FloatArray, gaps: Gaps) -> Touching | None:

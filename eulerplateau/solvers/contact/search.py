@@ -14,6 +14,7 @@ from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.contact.descent import ContactDescent
+from eulerplateau.solvers.contact.everywhere import OVERLAP
 from eulerplateau.solvers.contact.keeping import Touching
 from eulerplateau.solvers.contact.record import contacts_of
 from eulerplateau.solvers.contact.separation import separated
@@ -30,6 +31,9 @@ _OF_DIAMETER = 1 / 2
 _OF_LOOP = 1 / 3
 # A film is refined once in one solve, and laid on its mesh again where its strands part.
 _TIMES = 2
+# By which part of the diameter strands may overlap: between places that are held beside
+# each other that may be more than elsewhere.
+_MOST = 10 * OVERLAP
 
 
 def search(
@@ -66,7 +70,7 @@ def search(
             x, left = film.project(shape.x_loop), max_iterations - spent
             return _near(problem, strands, shape, film.lift(x), x, load, left, observe)
 
-        return _resolved(problem, found, again)
+        return _told(_resolved(problem, found, again), strands.diameter)
 
 
 def _from_tied(
@@ -149,6 +153,13 @@ def _record(
     if contacts.forces.min(initial=0.0) < -state.uncertain:
         return replace(found, status=Status.STALLED)
     return found
+
+
+def _told(found: Equilibrium | None, diameter: float) -> Equilibrium | None:
+    """Return what was found; UNRESOLVED if its strands are not kept apart everywhere."""
+    if found is None or not found.converged or found.overlap <= _MOST * diameter:
+        return found
+    return replace(found, status=Status.UNRESOLVED)
 
 
 def _resolved(

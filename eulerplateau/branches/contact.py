@@ -120,8 +120,9 @@ def contact_near(
     near: Gaps | None = gaps
     if near is None:
         near, _ = contact.strands.near(x, _CLOSED)
-    else:
-        near = near[contact.strands.distinct(near)]
+        # Along a line strands may be closer between two vertices than at any.
+        near = near.joined(contact.strands.nearest(x, _CLOSED))
+    near = near[contact.strands.distinct(near)]
     for _ in range(_CHANGES):
         assert near is not None
         contact = replace(contact, touch=Touch(near, np.zeros(len(near), dtype=bool)))

@@ -58,6 +58,19 @@ class Contact:
         held = with_gaps_held(energy, bounds.strands, self.touch.gaps)
         return replace(held, bounds=bounds)
 
+    def strands_on(self, loop: Loop) -> Strands:
+        """Return the strands of a loop, whatever its diameter."""
+        return self.bounds(loop).strands
+
+    @property
+    def gaps(self) -> Gaps:
+        """The gaps that are closed."""
+        return self.touch.gaps
+
+    def with_closed(self, gaps: Gaps) -> Contact:
+        """Return the same with other gaps closed."""
+        return replace(self, touch=Touch(gaps, ~gaps.slides))
+
     def near(self, x: FloatArray) -> Contact:
         """Return the gaps of the kind, and at the places, they should be at x (n, d)."""
         touch = GapBounds(self.strands, self.touch).settled(x)
@@ -107,8 +120,9 @@ def contact_near(
     near: Gaps | None = gaps
     if near is None:
         near, _ = contact.strands.near(x, _CLOSED)
-    else:
-        near = near[contact.strands.distinct(near)]
+        # Along a line strands may be closer between two vertices than at any.
+        near = near.joined(contact.strands.nearest(x, _CLOSED))
+    near = near[contact.strands.distinct(near)]
     for _ in range(_CHANGES):
         assert near is not None
         contact = replace(contact, touch=Touch(near, np.zeros(len(near), dtype=bool)))

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol, cast
+from typing import cast
 
 import numpy as np
 from scipy.linalg import LinAlgError
@@ -29,15 +29,13 @@ from eulerplateau.branches.deflation import (
     Step,
     wider,
 )
-from eulerplateau.branches.family import Family
-from eulerplateau.branches.point import BranchPoint, point_near
-from eulerplateau.film import FilmOfLoop
+from eulerplateau.branches.everywhere import FilmOnLoop, apart_everywhere
+from eulerplateau.branches.point import BranchPoint, across_values, point_near
 from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, passed
 from eulerplateau.solvers import (
     CLOSED,
     Keeping,
-    Problem,
     Touching,
     change_of_energy,
     noise_of,
@@ -46,24 +44,6 @@ from eulerplateau.solvers import (
 
 # As deflation's, and as many changes of what touches.
 _STEPS = 2 * STEPS
-
-
-class FilmOnLoop(Family, Protocol):
-    """A family of films on a loop with a diameter: a film_family.FilmFamily of one."""
-
-    @property
-    def film(self) -> FilmOfLoop:
-        """The film, good near one shape."""
-
-    @property
-    def contact(self) -> object:
-        """Which gaps are closed: a Contact."""
-
-    def at(self, value: float) -> tuple[Problem, float]:
-        """Return the problem and its load at a value of the parameter."""
-
-    def on(self, film: FilmOfLoop, contact: Contact | None = None) -> FilmOnLoop:
-        """Return the family of another film, or with other gaps closed."""
 
 
 def apart(family: FilmOnLoop, x: FloatArray) -> FloatArray | None:
@@ -172,7 +152,7 @@ class _Way:
                 continue
             x, film = point.x, family.film.renewed(point.x)
             if film is family.film or (before is not None and _agrees(before, x)):
-                return point
+                return apart_everywhere(point, across_values(point.x, 1.0))
             way, before = replace(self, family=family.on(film)), x
         return None
 

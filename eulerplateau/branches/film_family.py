@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.control import Direction
 from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.film import FilmOfLoop
@@ -23,6 +24,7 @@ from eulerplateau.solvers import (
     Status,
     TangentModel,
 )
+from eulerplateau.threads import one_thread
 
 if TYPE_CHECKING:
     from eulerplateau.branches.contact import Contact
@@ -163,6 +165,20 @@ def family_of(point: BranchPoint) -> FilmFamily:
 def equilibrium(point: BranchPoint) -> Equilibrium:
     """Return the equilibrium of a film at a point of one of its branches."""
     return family_of(point).equilibrium(point)
+
+
+def recorded(point: BranchPoint, way: Direction) -> BranchPoint:
+    """Return what is recorded of a point: one whose strands overlap nowhere.
+
+    It lies in the hyperplane through it normal to a way. Without a diameter, the point.
+    """
+    if family_of(point).problem.loop.diameter is None:
+        return point
+    # Loaded for such loops only.
+    from eulerplateau.branches.everywhere import apart_everywhere
+
+    with one_thread():
+        return apart_everywhere(point, way)
 
 
 def family_on(

@@ -22,8 +22,9 @@ from eulerplateau.branches.film_family import (
     family_of,
     family_on,
     on_its_mesh,
+    recorded,
 )
-from eulerplateau.branches.point import BranchPoint, first_point, point_near
+from eulerplateau.branches.point import BranchPoint, across_values, first_point, point_near
 from eulerplateau.branches.progress import Arrays, progress_from
 from eulerplateau.errors import SpecError
 from eulerplateau.loop import LEAST, MOST
@@ -43,27 +44,36 @@ _EQUILIBRIA = Status.CONVERGED, Status.UNRESOLVED
 
 @dataclass(frozen=True, repr=False)
 class FilmPoint(DiagramPoint):
-    """A point of a film's diagram."""
+    """A point of a film's diagram.
+
+    Strands of a loop with a diameter overlap nowhere: `recorded` is next to `point`, from
+    which the branch goes on.
+    """
+
+    @cached_property
+    def recorded(self) -> BranchPoint:
+        """What is said of it: the point, or that next to it without overlaps."""
+        return recorded(self.point, self.point.direction)
 
     @property
     def value(self) -> float:
         """The parameter that is varied: the load, or the link."""
-        return self.point.value
+        return self.recorded.value
 
     @property
     def load(self) -> float:
         """The film's load."""
-        return family_of(self.point).at(self.value)[1]
+        return family_of(self.recorded).at(self.value)[1]
 
     @property
     def problem(self) -> Problem:
         """The problem of which it is an equilibrium at that load."""
-        return family_of(self.point).at(self.value)[0]
+        return family_of(self.recorded).at(self.value)[0]
 
     @cached_property
     def equilibrium(self) -> Equilibrium:
         """The film there, with all its numbers."""
-        return equilibrium(self.point)
+        return equilibrium(self.recorded)
 
     @property
     def shape(self) -> Shape:
@@ -112,7 +122,7 @@ def equilibrium_near(
         if found is None:
             where = f"the {parameter} {value:g}"
             raise SpecError("start", f"no equilibrium is next to it at {where}")
-        return equilibrium(found)
+        return equilibrium(recorded(found, across_values(found.x, 1.0)))
 
 
 def where_from(

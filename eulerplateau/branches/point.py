@@ -105,8 +105,12 @@ def point_near(
     least : as of a StepControl
     """
     control = StepControl((value, value), unit=max(value, 1.0), least=least)
-    at_this_value = Direction(np.zeros_like(x), control.unit)
-    return correct(family, x, value, at_this_value, control)
+    return correct(family, x, value, across_values(x, control.unit), control)
+
+
+def across_values(x: FloatArray, unit: float) -> Direction:
+    """Return the direction normal to which are all loops (n, d) of one value."""
+    return Direction(np.zeros_like(x), unit)
 
 
 def ahead(point: BranchPoint, value: float, least: float = 0.0) -> BranchPoint | None:

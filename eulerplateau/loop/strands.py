@@ -15,7 +15,6 @@ touch where the curvature is below 2 / d.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import pi
@@ -29,12 +28,13 @@ from scipy.sparse.csgraph import connected_components
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.loop.gaps import NO_GAPS, Between, Gaps
 from eulerplateau.loop.loop import Loop
+from eulerplateau.loop.minima import flat_minima, rows_of
 from eulerplateau.loop.strand_kernels import (
     nearest_pairs,
     nearest_to_places,
     settle_each,
 )
-from eulerplateau.loop.stretches import ALONG, of_one_strand, offsets
+from eulerplateau.loop.stretches import ALONG, first_of_each, of_one_strand, offsets
 
 # Strands touch at a point where they part at least so fast, d2D/ds2 in units of 1 / L:
 # a loop's curvature is 2 pi. One that touches at a point does so until half of that.
@@ -46,6 +46,8 @@ _SAGGING = 0.5
 _BESIDE = 0.75
 # By how many edges the places of a gap may move while it is followed.
 _FOLLOWED = 5.0
+# Below which gap, in diameters, strands that touch may lie beside each other.
+_FLAT = 1e-3
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
 _SPREAD = 0.03
 
@@ -127,7 +129,7 @@ class Strands:
             offsets(self.knots, beside),
             *self._limits(reach),
         )
-        rows = _rows(looked_for, 6)
+        rows = rows_of(looked_for, 6)
         least = Gaps(rows[:, 3], rows[:, 4], np.zeros(len(rows), dtype=bool))
         along: BoolArray = rows[:, 5] < _PARTING
         along |= ~self.unlike(least, beside, ALONG)
@@ -139,7 +141,9 @@ class Strands:
 
     def nearest(self, x: FloatArray, reach: float) -> Gaps:
         """Return where gaps are least and below reach, however strands spread there."""
-        least = self._least(self._curve(x), reach)
+        curve = self._curve(x)
+        least = np.vstack([self._least(curve, reach), self._flat(curve, reach)])
+        least = least[first_of_each(least[:, :2], self.knots[-1])]
         return Gaps(least[:, 0], least[:, 1], np.zeros(len(least), dtype=bool))
 
     def smallest_gap(self, x: FloatArray, reach: float) -> float:
@@ -147,14 +151,19 @@ class Strands:
 
         Infinite if none is below reach.
         """
-        least = self._least(self._curve(x), reach)
+        curve, flat = self._curve(x), min(reach, _FLAT * self.diameter)
+        least = np.vstack([self._least(curve, reach), self._flat(curve, flat)])
         return float(least[:, 2].min(initial=np.inf) - self.diameter)
 
     def _least(self, curve: _Curve, reach: float) -> FloatArray:
         """Return where distances are least by s and t: rows s, t, D, d2D/ds2 (k, 4)."""
         bends = 2 * np.linalg.norm(curve.pieces[:, 1], axis=1) * self.loop.rest_lengths**2
         sagging = _SAGGING * float(bends.max())
-        return _rows(partial(nearest_pairs, *curve, *self._limits(reach), sagging), 4)
+        return rows_of(partial(nearest_pairs, *curve, *self._limits(reach), sagging), 4)
+
+    def _flat(self, curve: _Curve, reach: float) -> FloatArray:
+        """Return the same rows where D is flat, along strands beside each other."""
+        return flat_minima(*curve, *self._limits(reach))
 
     def _curve(self, x: FloatArray) -> _Curve:
         return _Curve(np.ascontiguousarray(x), self._pieces(x), self.knots)
@@ -262,14 +271,3 @@ def strands_of(loop: Loop) -> Strands:
     """Return the strands of a loop that has a diameter."""
     assert loop.diameter is not None
     return Strands(loop, loop.diameter, 0.5 * pi * loop.diameter)
-
-
-def _rows(look: Callable[[FloatArray], int], columns: int) -> FloatArray:
-    """Return all rows that a search finds, which is told how many it has room for."""
-    room = 64
-    while True:
-        found = np.empty((room, columns))
-        count = look(found)
-        if count <= room:
-            return found[:count]
-        room = 2 * count

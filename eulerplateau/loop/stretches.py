@@ -13,6 +13,8 @@ from eulerplateau.loop.gaps import NO_GAPS, Gaps
 
 # Edges within which strands that lie along each other do so.
 ALONG = 2.5
+# Places nearer to each other, in parts of the loop, are the same.
+_SAME = 1e-7
 
 
 def offsets(knots: FloatArray, beside: Gaps) -> FloatArray:
@@ -62,6 +64,18 @@ def from_one_strand(knots: FloatArray, gaps: Gaps, beside: Gaps = NO_GAPS) -> Ga
     held = gaps.slides | of_one_strand(knots, gaps.s, gaps.t, beside)
     s, t = np.where(held, gaps.s, gaps.t), np.where(held, gaps.t, gaps.s)
     return Gaps(s, t, gaps.slides)
+
+
+def first_of_each(pairs: FloatArray, whole: float) -> BoolArray:
+    """Return which pairs of places (k, 2) are the first of those that are the same.
+
+    They are so whichever of the two comes first, on a loop that is so long.
+    """
+    ordered = np.sort(pairs, axis=1)
+    off = np.abs(ordered[:, None] - ordered)
+    same = np.all(np.minimum(off, whole - off) < _SAME * whole, axis=2)
+    first: BoolArray = np.logical_not(np.any(np.tril(same, -1), axis=1))
+    return first
 
 
 def _origin(places: FloatArray, whole: float) -> float:

@@ -1,4 +1,5 @@
 from .contact.keeping import CLOSED as CLOSED, Keeping as Keeping, Touching as Touching
+from .contact.program import Program as Program
 from .contact.record import contacts_at as contacts_at
 from .contact.separation import separated as separated
 from .correction import Corrected as Corrected, corrected as corrected
@@ -22,6 +23,7 @@ from .newton import lowest_modes as lowest_modes
 from .problem import Problem as Problem
 from .second_variation import (
     TangentModel as TangentModel,
+    loosened as loosened,
     spectrum_of as spectrum_of,
     stability as stability,
     tangent_model as tangent_model,

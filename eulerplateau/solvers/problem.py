@@ -29,8 +29,8 @@ from eulerplateau.solvers.equilibrium import (
 )
 
 # Relative error of lengths up to which what a solver stopped at is a loop at all; by which
-# part of the diameter strands may overlap between the vertices they are held at.
-_CLOSED, _OVERLAP = 1e-3, 1e-2
+# part of the diameter strands may overlap between the places they are held at.
+_CLOSED, _OVERLAP = 1e-3, 1e-5
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -289,7 +289,6 @@ class Problem:
         diameter = self.loop.diameter
         if diameter is None:
             return found
-        # What vertices do not see of strands along each other is an edge's length's fault.
         if found.overlap > _OVERLAP * diameter:
             return replace(found, status=Status.UNRESOLVED)
         if self.film.touches(found.shape, diameter):

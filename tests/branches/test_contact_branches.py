@@ -136,17 +136,6 @@ def work(before: BranchPoint, after: BranchPoint) -> float:
 
 
 @pytest.mark.slow
-def test_strands_overlap_between_places_by_less_than_the_mesh_errs() -> None:
-    """They are held once an edge along a line: in between faster than its square falls."""
-    overlaps = [
-        max(equilibrium(place.point).overlap for place in loaded(edges, 0.3, 5000.0))
-        for edges in (24, 48)
-    ]
-    assert overlaps[0] < 0.02 * DIAMETER
-    assert overlaps[1] < overlaps[0] / 4
-
-
-@pytest.mark.slow
 def test_unloading_is_the_same_branch() -> None:
     """The line joins to a point, and the point parts, where they came to be."""
     there = loaded(24, 0.0, 3600.0)

@@ -19,7 +19,6 @@ import numpy as np
 
 from eulerplateau.errors import EulerPlateauError
 from eulerplateau.mesh import write_whole
-from eulerplateau.pictures.png import png_content
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -201,14 +200,14 @@ def save(figure: Figure, path: Path) -> None:
     _fix_layout(figure, form)
     with rc_context(settings):
         if form == "png":
-            content.write(_png(figure))
+            _write_png(figure, content)
         else:
             figure.savefig(content, format=form, dpi=_DPI, metadata=_UNDATED[form])
     write_whole(path, content.getvalue())
 
 
-def _png(figure: Figure) -> bytes:
-    """Return what a PNG of a figure says that is transparent nowhere."""
+def _write_png(figure: Figure, file: io.BytesIO) -> None:
+    """Write a figure as matplotlib does, but for what is transparent nowhere."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image
 
@@ -216,8 +215,9 @@ def _png(figure: Figure) -> bytes:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()  # type: ignore[no-untyped-call]
     seen = np.asarray(canvas.buffer_rgba())  # type: ignore[no-untyped-call]
-    # To take three of four bytes takes Pillow a quarter of NumPy's time.
-    return png_content(np.asarray(Image.fromarray(seen).convert("RGB")), _DPI)
+    image = Image.fromarray(seen).convert("RGB")
+    # Less than a seventh longer than at the default, in half of the time.
+    image.save(file, "png", dpi=(_DPI, _DPI), compress_level=3)
 
 
 def lay_out(figure: Figure) -> None:

@@ -210,17 +210,15 @@ class LocalFilm(ABC):
 
         Raises LinAlgError if there is none near the reference: it has torn or folded.
         """
-        loop = self.tiling.loop
-        for number, (its_loop, known) in enumerate(self._recent):
-            if its_loop is x_loop:
-                return known
+        for its_loop, known in self._recent:
             if np.array_equal(its_loop, x_loop):
-                self._recent[number] = (x_loop, known)
                 return known
+        loop = self.tiling.loop
         base = self.x + self.follow(x_loop - self.x[loop])
         base[loop] = x_loop
         found = self._settled(base, self._begun(base))
-        self._recent[:] = [(x_loop, found), *self._recent[:1]]
+        # A copy: who asks may go on with the array.
+        self._recent[:] = [(x_loop.copy(), found), *self._recent[:1]]
         return found
 
     def rests_at(self, x: FloatArray) -> bool:

@@ -62,6 +62,14 @@ def test_force_on_the_loop_leaves_a_remainder_of_second_order(local: LocalFilm) 
     assert slope == pytest.approx(2.0, abs=0.05)
 
 
+def test_an_array_that_was_changed_is_another_loop(local: LocalFilm) -> None:
+    """Films asked for are known again by their loops, and not by who holds these."""
+    x_loop = local.x[local.tiling.loop]
+    before = local.relax(x_loop).area
+    x_loop *= 1.01
+    assert local.relax(x_loop).area == pytest.approx(1.01**2 * before, rel=1e-6)
+
+
 def test_film_follows_its_loop_to_first_order(local: LocalFilm) -> None:
     x_loop = local.x[local.tiling.loop]
     here, step = local.relax(x_loop), shapes.wave(len(local.tiling.loop), 1e-5)

@@ -9,6 +9,8 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from scripts.studies.common import machine, markdown_table
+from scripts.studies.error_vs_time.by_turns import by_turns
 from scripts.studies.error_vs_time.conformal import (
     CONFORMAL,
     TANGENT_ANGLE,
@@ -103,6 +105,15 @@ def point(meshes: tuple[Path, ...], scene: str, solver: str, harmonics: int) -> 
             records = repeated(sequence, SCENES[scene], solver)
         for record in records:
             click.echo(json.dumps(record))
+
+
+@main.command()
+@click.argument("table", type=click.Path(path_type=Path, dir_okay=False, exists=True))
+def pairs(table: Path) -> None:
+    """Measure what TABLE, an error_vs_time.csv, compares at equal error again, by turns."""
+    with TemporaryDirectory() as folder:
+        rows = by_turns(read_csv(table), COARSEST, Path(folder))
+        click.echo(f"{machine()}\n\n{markdown_table(rows, 2)}")
 
 
 def measure_scene(

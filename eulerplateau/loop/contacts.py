@@ -23,7 +23,10 @@ class Contacts:
     gaps : (k,) float, the distance less the diameter
     angles : (k,) float, the acute angle between the strands' tangents, degrees
     at_a_point : (k,) bool
-        Whether strands cross there; else they lie beside each other, and it is one vertex.
+        Whether strands cross there; else they lie beside each other.
+    slides : (k,) bool
+        Whether the gap is least there by s too, and is held where it is; else it is held
+        where s is. So does what crosses, and what lies beside each other at the minimum.
     uncertain : float, what a force can be off by
     pushes : (n_b, 3) float, what the contacts add to the energy's gradient
     smallest_gap : float, of all places, touching or not; infinite beyond half the diameter
@@ -38,6 +41,7 @@ class Contacts:
     gaps: FloatArray
     angles: FloatArray
     at_a_point: BoolArray
+    slides: BoolArray
     uncertain: float
     pushes: FloatArray
     smallest_gap: float
@@ -54,7 +58,7 @@ class Contacts:
     @property
     def places(self) -> Gaps:
         """The gaps that are closed."""
-        return Gaps(self.s, self.t, self.at_a_point)
+        return Gaps(self.s, self.t, self.slides)
 
     @property
     def force(self) -> float:

@@ -131,7 +131,7 @@ def accepted(step: NewtonStep, gained: float, noise: float, radius: float) -> fl
     noise : float, the change of energy that rounding alone can show
     """
     at_noise = abs(gained) <= noise and -step.promised <= noise
-    if not (gained <= 0.1 * step.promised or at_noise):
+    if not (gained <= 0.1 * min(step.promised, 0.0) or at_noise):
         return None
     grow = step.size > 0.8 * radius and gained < 0.75 * step.promised
     return min(2 * radius, _LARGEST_RADIUS) if grow else radius

@@ -50,7 +50,8 @@ class Touching:
     """A loop with the gaps that are closed on it, and the model that keeps them.
 
     At places of `laid` strands touched at a point on the way, and lay along each other. So
-    many `changes` of the kinds of contacts have led to it.
+    many `changes` of the kinds of contacts have led to it. In no step has what must fall
+    `risen` by more than that, alpha / L: the energy, or the merit function of merit.py.
     """
 
     model: TangentModel
@@ -59,6 +60,7 @@ class Touching:
     radius: float
     iteration: int
     changes: int = 0
+    risen: float = -np.inf
 
     @property
     def beside(self) -> Gaps:
@@ -94,7 +96,9 @@ class Keeping:
     ) -> Touching:
         """Return the state that follows on another loop, or with other gaps closed."""
         wide = state.radius if radius is None else radius
-        return self._touching(x, gaps, state.laid, wide, state.iteration + 1, state.changes)
+        spent = state.iteration + 1, state.changes
+        after = self._touching(x, gaps, state.laid, wide, *spent)
+        return replace(after, risen=state.risen)
 
     def _changed(self, state: Touching, gaps: Gaps, laid: Gaps) -> Touching | None:
         """Return the state with other gaps closed in place of its own, if they can be."""
@@ -104,7 +108,8 @@ class Keeping:
         if cleared is None:
             return None
         spent = state.iteration + 1, state.changes + 1
-        return self._touching(*cleared, laid, FIRST_RADIUS, *spent)
+        after = self._touching(*cleared, laid, FIRST_RADIUS, *spent)
+        return replace(after, risen=state.risen)
 
     def _touching(
         self,

@@ -32,6 +32,8 @@ class Contacts:
     smallest_gap : float, of all places, touching or not; infinite beyond half the diameter
     unstable_let_go : int or None
         The Morse index with the doubtful contacts let go; None where none is doubtful.
+    risen : float
+        By how much, in one step of the solver, what must fall has risen at most: rounding.
     """
 
     s: FloatArray
@@ -46,6 +48,7 @@ class Contacts:
     pushes: FloatArray
     smallest_gap: float
     unstable_let_go: int | None = None
+    risen: float = 0.0
 
     def __len__(self) -> int:
         """Return k."""

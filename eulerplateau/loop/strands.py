@@ -35,6 +35,7 @@ from eulerplateau.loop.strand_kernels import (
     settle_each,
 )
 from eulerplateau.loop.stretches import ALONG, of_one_strand, offsets
+from eulerplateau.loop.twist import passed
 
 # Strands touch at a point where they part at least so fast, d2D/ds2 in units of 1 / L:
 # a loop's curvature is 2 pi. One that touches at a point does so until half of that.
@@ -46,6 +47,8 @@ _SAGGING = 0.5
 _BESIDE = 0.75
 # By how many edges the places of a gap may move while it is followed.
 _FOLLOWED = 5.0
+# Into so many chords edges are cut where their own may be too coarse.
+_FINER = 8
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
 _SPREAD = 0.03
 
@@ -96,6 +99,22 @@ class Strands:
     def curve(self, x: FloatArray) -> CubicSpline:
         """Return the smooth curve through vertices x (n, d)."""
         return CubicSpline(self.knots, np.vstack([x, x[:1]]), bc_type="periodic")
+
+    def passed(self, x: FloatArray, after: FloatArray) -> bool:
+        """Return whether a strand has passed through another on a short way, x (n, d).
+
+        Chords may where their curves do not: of these finer ones are asked then.
+        """
+        if not passed(x, after):
+            return False
+        return passed(self._finer @ x, self._finer @ after)
+
+    @cached_property
+    def _finer(self) -> FloatArray:
+        """The weights (m n, n) of vertices at m places of each edge."""
+        parts = np.arange(_FINER) / _FINER
+        lengths = self.loop.rest_lengths[:, None]
+        return self.weights((self.knots[:-1, None] + lengths * parts).ravel())
 
     def _pieces(self, x: FloatArray) -> FloatArray:
         """Return the curve's cubics (n, 4, d): a spline made anew costs ten times more."""

@@ -138,8 +138,10 @@ class Everywhere:
             led = self._led(steps, radius)
             if led is None:
                 return None
-            step, gaps = led
-            closed, more = self._closed(x + step.moved, gaps), known
+            (step, gaps), more = led, known
+            near, slide = x + step.moved, self._sliding(x, gaps)
+            # Where two places come to be one neither can slide.
+            closed = self._closed(near, slide) or self._closed(near, gaps)
             if closed is not None:
                 gained = merit.gained(steps, step, closed[0], radius)
                 if gained is not None:
@@ -165,11 +167,8 @@ class Everywhere:
         state = steps.state
         step, gaps = state.model.newton_step(radius), state.gaps
         if step is None or not _pushes(state) or steps.overlaps(step.moved):
-            programmed = steps.programmed(radius)
-            if programmed is None:
-                return None
-            step, gaps = programmed
-        return step, self._sliding(state.model.x, gaps)
+            return steps.programmed(radius)
+        return step, gaps
 
     def _sliding(self, x: FloatArray, gaps: Gaps) -> Gaps:
         """Return gaps, of which those slide that are nearly where strands are nearest."""

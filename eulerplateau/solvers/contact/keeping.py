@@ -22,7 +22,6 @@ from eulerplateau.loop import (
     LoopEnergy,
     Strands,
     contact_spreads,
-    passed,
     with_gaps_held,
 )
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
@@ -39,6 +38,8 @@ _PULLS = 1e-9
 # By which part of the diameter strands may overlap between vertices at which they are held
 # along each other; and how often that is mended, or strands that part are held at points.
 _BETWEEN = 1e-3
+# By which part they are not left to on the way.
+_FAR = 0.05
 CHANGES = 3
 # Strands touch at a point where they spread so fast from there, d2D/ds2 in 1 / L, and do so
 # until they spread less than that; and than that in their least distance, on the way.
@@ -60,7 +61,7 @@ class Touching:
     radius: float
     iteration: int
     changes: int = 0
-    risen: float = -np.inf
+    risen: float = 0.0
 
     @property
     def beside(self) -> Gaps:
@@ -188,18 +189,28 @@ class Keeping:
         """
         for _ in range(_ROUNDS):
             closed = self.closed(x, gaps)
-            if closed is None or passed(before, closed[0]):
+            if closed is None or self.strands.passed(before, closed[0]):
                 return None
             x, gaps = closed
             near, widths = self.strands.near(x, NEGATIVE, beside)
             held, _ = self.strands.at(x, gaps)
             new = self.strands.unlike(near, held)
             if not new.any():
-                return x, gaps
+                far = self._far(x)
+                if not len(far):
+                    return x, gaps
+                if self.strands.at(x, far)[1].min() < -_DEEP * self.strands.diameter:
+                    return None
+                gaps = gaps[self.strands.unlike(held, far)].joined(far)
+                continue
             if widths[new].min() < -_DEEP * self.strands.diameter:
                 return None
             gaps = gaps.joined(near[new])
         return None
+
+    def _far(self, x: FloatArray) -> Gaps:
+        """Return where strands overlap far between places that are looked at."""
+        return self.strands.nearest(x, -_FAR * self.strands.diameter)
 
     def without(self, state: Touching, let_go: BoolArray) -> Touching:
         """Return the state with some of its gaps (k,) no longer closed."""

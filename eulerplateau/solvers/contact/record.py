@@ -36,6 +36,7 @@ def contacts_of(
         uncertain=state.uncertain,
         pushes=film.lift(pushes.reshape(x.shape)),
         smallest_gap=strands.smallest_gap(x, 0.5 * strands.diameter),
+        risen=state.risen,
     )
     if not found.doubtful.any():
         return found

@@ -63,7 +63,7 @@ def search(
         lost = found is None or found.status is Status.STALLED
         if lost and problem.film.dimension != 2:
             other = _from_tied(problem, strands, x_loop, *more)
-            if found is None or (other is not None and other.converged):
+            if found is None or _is_better(problem, start, x_loop, load, other):
                 found = other
 
         def again(shape: Shape, spent: int) -> Equilibrium | None:
@@ -71,6 +71,24 @@ def search(
             return _near(problem, strands, shape, film.lift(x), x, load, left, observe)
 
         return _told(_resolved(problem, found, again), strands.diameter)
+
+
+def _is_better(
+    problem: Problem,
+    start: Shape,
+    x_loop: FloatArray,
+    load: float,
+    other: Equilibrium | None,
+) -> bool:
+    """Return whether a film has converged to one no higher than that at the start."""
+    if other is None or not other.converged:
+        return False
+    film = problem.film
+    try:
+        shape = film.prepared(film.carried(start, x_loop))
+    except LinAlgError:  # none is spanned there
+        return True
+    return other.energy <= problem.energy(shape, load)
 
 
 def _from_tied(

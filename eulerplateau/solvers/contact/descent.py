@@ -12,14 +12,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, LoopEnergy, Strands
-from eulerplateau.solvers.contact.everywhere import Everywhere
-from eulerplateau.solvers.contact.keeping import CHANGES, CLOSED, Keeping, Touching
-from eulerplateau.solvers.contact.steps import Steps
-from eulerplateau.solvers.descent import (
+from eulerplateau.solvers.acceptance import (
     SMALLEST_RADIUS,
     accepted,
     at_rounding,
@@ -27,6 +25,9 @@ from eulerplateau.solvers.descent import (
     change_of_energy,
     noise_of,
 )
+from eulerplateau.solvers.contact.keeping import CHANGES, Keeping, Touching
+from eulerplateau.solvers.contact.program import CLOSED
+from eulerplateau.solvers.contact.steps import Steps
 from eulerplateau.solvers.equilibrium import Status
 from eulerplateau.solvers.second_variation import NewtonStep, TangentModel, stability
 from eulerplateau.solvers.trust_region import FIRST_RADIUS
@@ -35,15 +36,29 @@ from eulerplateau.solvers.trust_region import FIRST_RADIUS
 _REACH = 1.0
 
 
+class LastStage(Protocol):
+    """What becomes of a loop at rest: everywhere.Everywhere."""
+
+    def settled(self, state: Touching) -> tuple[Touching, bool]:
+        """Return what it comes to, and whether that is a minimum."""
+
+    def again(self, state: Touching, x: FloatArray) -> Touching | None:
+        """Return the minimum near x (n, d) of another energy's; None if there is none."""
+
+
 @dataclass(frozen=True)
 class ContactDescent:
-    """A descent of one energy, as solvers.descent.Descent; `energy` knows no contact."""
+    """A descent of one energy, as solvers.descent.Descent; `energy` knows no contact.
+
+    Where it has come to rest the `last` stage goes on, if there is one.
+    """
 
     energy: LoopEnergy
     strands: Strands
     max_iterations: int
     observe: Callable[[FloatArray], None] = lambda x_loop: None
     ends: Callable[[TangentModel], bool] = lambda model: False
+    last: LastStage | None = None
 
     def run(self, x: FloatArray, before: Touching | None = None) -> tuple[Touching, Status]:
         """Descend from a loop (n, d) on which no strands overlap.
@@ -56,7 +71,9 @@ class ContactDescent:
             if at_rounding(state.model) and stability(state.model).n_unstable == 0:
                 other = self.keeping.mended(state)
                 if other is None:
-                    state, settles = self._everywhere.settled(state)
+                    if self.last is None:
+                        return state, Status.CONVERGED
+                    state, settles = self.last.settled(state)
                     return state, Status.CONVERGED if settles else Status.UNRESOLVED
                 state = other
                 continue
@@ -73,8 +90,8 @@ class ContactDescent:
         if before is None:
             return self.keeping.at(x, self.strands.near(x, CLOSED)[0], FIRST_RADIUS)
         before = replace(before, iteration=0)
-        if before.changes >= CHANGES:
-            settled = self._everywhere.again(before, x)
+        if self.last is not None and before.changes >= CHANGES:
+            settled = self.last.again(before, x)
             if settled is not None:
                 return settled
         state = self.keeping.moved(before, x, before.gaps, FIRST_RADIUS)
@@ -85,14 +102,11 @@ class ContactDescent:
         """How gaps are kept closed."""
         return Keeping(self.energy, self.strands)
 
-    @cached_property
-    def _everywhere(self) -> Everywhere:
-        return Everywhere(self.energy, self.strands, at_rounding)
-
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
         radius = state.radius
-        steps = Steps(self.energy, self.strands, state, self._near(state))
+        near = self._near(state)
+        steps = Steps(self.energy, self.strands, state.model, state.gaps, near)
         while radius > SMALLEST_RADIUS:
             step, gaps = _within(steps, radius)
             reached = self._reached(state, step, gaps, radius)
@@ -132,7 +146,7 @@ def _within(steps: Steps, radius: float) -> tuple[NewtonStep, Gaps]:
     It keeps those of the state; if strands overlap then to first order, it is that of the
     program.
     """
-    model, gaps = steps.state.model, steps.state.gaps
+    model, gaps = steps.model, steps.gaps
     step = model.newton_step(radius)
     if step is None:
         step = bounded_step(steps.energy, model, radius)

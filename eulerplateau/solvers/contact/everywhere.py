@@ -24,10 +24,10 @@ from scipy.linalg import LinAlgError
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, LoopEnergy, Strands, from_one_strand, with_gaps_held
+from eulerplateau.solvers.acceptance import SMALLEST_RADIUS
 from eulerplateau.solvers.contact.keeping import CHANGES, Touching
 from eulerplateau.solvers.contact.merit import Merit
 from eulerplateau.solvers.contact.steps import Steps
-from eulerplateau.solvers.descent import SMALLEST_RADIUS
 from eulerplateau.solvers.second_variation import (
     NewtonStep,
     TangentModel,
@@ -135,7 +135,7 @@ class Everywhere:
         """
         x, radius, steps = state.model.x, FIRST_RADIUS, self._steps(state, known)
         while radius > SMALLEST_RADIUS:
-            led = self._led(steps, radius)
+            led = self._led(state, steps, radius)
             if led is None:
                 return None
             (step, gaps), more = led, known
@@ -143,7 +143,10 @@ class Everywhere:
             # Where two places come to be one neither can slide.
             closed = self._closed(near, slide) or self._closed(near, gaps)
             if closed is not None:
-                gained = merit.gained(steps, step, closed[0], radius)
+                promises = replace(
+                    step, promised=step.promised + merit.price * steps.dearer(step)
+                )
+                gained = merit.gained(state.model, promises, closed[0], radius)
                 if gained is not None:
                     risen = max(state.risen, gained)
                     return replace(self._made(state, *closed), risen=risen), known
@@ -160,15 +163,17 @@ class Everywhere:
         least = self._least(x, gaps, _NEAR)
         known = known[self.strands.unlike(known, gaps[gaps.slides], _SLIDES)]
         near = self._with(gaps.joined(least), known)
-        return Steps(self.energy, self.strands, state, self.strands.at(x, near)[0])
+        near, _ = self.strands.at(x, near)
+        return Steps(self.energy, self.strands, state.model, gaps, near)
 
-    def _led(self, steps: Steps, radius: float) -> tuple[NewtonStep, Gaps] | None:
+    def _led(
+        self, state: Touching, steps: Steps, radius: float
+    ) -> tuple[NewtonStep, Gaps] | None:
         """Return the step of at most such a radius, and the gaps to close after it."""
-        state = steps.state
-        step, gaps = state.model.newton_step(radius), state.gaps
+        step = state.model.newton_step(radius)
         if step is None or not _pushes(state) or steps.overlaps(step.moved):
             return steps.programmed(radius)
-        return step, gaps
+        return step, state.gaps
 
     def _sliding(self, x: FloatArray, gaps: Gaps) -> Gaps:
         """Return gaps, of which those slide that are nearly where strands are nearest."""

@@ -27,9 +27,7 @@ from eulerplateau.loop import (
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 from eulerplateau.solvers.trust_region import FIRST_RADIUS
 
-# A gap, in units of L, that is closed, and by which part of the diameter strands may
-# overlap before they are pushed back.
-CLOSED = 1e-10
+# By which part of the diameter strands may overlap before they are pushed back.
 _DEEP = 0.25
 # Rounds in which gaps are closed that the closing of others has made negative.
 _ROUNDS = 6

@@ -14,9 +14,8 @@ from dataclasses import dataclass, replace
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy, Strands
-from eulerplateau.solvers.contact.steps import Steps
-from eulerplateau.solvers.descent import accepted, change_of_energy, noise_of
-from eulerplateau.solvers.second_variation import NewtonStep
+from eulerplateau.solvers.acceptance import accepted, change_of_energy, noise_of
+from eulerplateau.solvers.second_variation import NewtonStep, TangentModel
 
 # How much larger than all forces together the price is where it is set.
 _DEARER = 2.0
@@ -40,21 +39,20 @@ class Merit:
         return replace(self, price=_DEARER * together)
 
     def gained(
-        self, steps: Steps, step: NewtonStep, after: FloatArray, radius: float
+        self, model: TangentModel, step: NewtonStep, after: FloatArray, radius: float
     ) -> float | None:
-        """Return by how much P changes from a state to a loop that a step has led to.
+        """Return by how much P changes from a model's loop to one that a step has led to.
 
-        None if it does not fall as the step promised, to first order in the gaps it has
-        looked at; or if the energy is not good there.
+        None if it does not fall as the step promised, or the energy is not good there.
+
+        step : what it promises is the change of P, to first order in the gaps it looks at
         """
-        x, tensions = steps.state.model.x, steps.state.model.tensions
-        gained = self._change(x, after)
+        gained = self._change(model.x, after)
         if gained is None or not self.energy.holds(after):
             return None
-        noise = noise_of(self.energy, x, after - x, tensions) + _ROUNDING * self.price
-        dearer = steps.overlap(step.moved) - steps.overlap(0.0 * step.moved)
-        promise = replace(step, promised=step.promised + self.price * dearer)
-        return None if accepted(promise, gained, noise, radius) is None else gained
+        noise = noise_of(self.energy, model.x, after - model.x, model.tensions)
+        noise += _ROUNDING * self.price
+        return None if accepted(step, gained, noise, radius) is None else gained
 
     def _change(self, x: FloatArray, after: FloatArray) -> float | None:
         """Return P at another loop less that at x; None where there is no film on it."""

@@ -13,8 +13,9 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
+from eulerplateau.solvers.acceptance import at_rounding
 from eulerplateau.solvers.contact.descent import ContactDescent
-from eulerplateau.solvers.contact.everywhere import OVERLAP
+from eulerplateau.solvers.contact.everywhere import OVERLAP, Everywhere
 from eulerplateau.solvers.contact.keeping import Touching
 from eulerplateau.solvers.contact.record import contacts_of
 from eulerplateau.solvers.contact.separation import separated
@@ -108,7 +109,9 @@ def _from_tied(
         return None
     energy = tied.energy(problem.loop, load)
     try:
-        state, _ = ContactDescent(energy, strands, max_iterations).run(x_loop)
+        last = Everywhere(energy, strands, at_rounding)
+        descent = ContactDescent(energy, strands, max_iterations, last=last)
+        state, _ = descent.run(x_loop)
     except LinAlgError:
         return None
     x, more = state.model.x, (load, max_iterations, observe)
@@ -135,7 +138,8 @@ def _near(
         nonlocal state, x_loop
         energy = film.energy(problem.loop, load)
         ends = partial(elsewhere, film)
-        descent = ContactDescent(energy, strands, left, observe, ends)
+        last = Everywhere(energy, strands, at_rounding)
+        descent = ContactDescent(energy, strands, left, observe, ends, last)
         state, status = descent.run(x_loop, state)
         x_loop = state.model.x
         # A film that gets stuck away from where it was made may not, made anew.

@@ -9,30 +9,33 @@ import numpy as np
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import Gaps, LoopEnergy, Strands, with_gaps_held
-from eulerplateau.solvers.contact.keeping import CLOSED, Touching
-from eulerplateau.solvers.contact.program import Program
+from eulerplateau.solvers.contact.program import CLOSED, Program
 from eulerplateau.solvers.second_variation import NewtonStep, TangentModel, loosened
 
 
 @dataclass(frozen=True)
 class Steps:
-    """Steps from a state, `near` what may be closed: its gaps, others behind them."""
+    """Steps from where gaps are closed; `near` what may be: these, others behind them.
+
+    `model` keeps them; `energy` knows no contact.
+    """
 
     energy: LoopEnergy
     strands: Strands
-    state: Touching
+    model: TangentModel
+    gaps: Gaps
     near: Gaps
 
     def overlaps(self, moved: FloatArray) -> bool:
         """Return whether a step (n, d) makes others overlap, to first order."""
         widths = self._widths + self._rows @ moved.ravel()
-        others = np.arange(len(widths)) >= len(self.state.gaps)
+        others = np.arange(len(widths)) >= len(self.gaps)
         return bool((widths[others] < -CLOSED).any())
 
-    def overlap(self, moved: FloatArray) -> float:
-        """Return by how much strands overlap after a step (n, d), to first order."""
-        widths = self._widths + self._rows @ moved.ravel()
-        return max(0.0, -float(widths.min(initial=0.0)))
+    def dearer(self, step: NewtonStep) -> float:
+        """Return by how much more strands overlap at most after it, to first order."""
+        after = self._widths + self._rows @ step.moved.ravel()
+        return float(self._widths.min(initial=0.0) - after.min(initial=0.0))
 
     def programmed(self, radius: float) -> tuple[NewtonStep, Gaps] | None:
         """Return the program's step of at most such a radius, and what it closes."""
@@ -44,20 +47,20 @@ class Steps:
 
     @cached_property
     def _widths(self) -> FloatArray:
-        return self.strands.at(self.state.model.x, self.near)[1]
+        return self.strands.at(self.model.x, self.near)[1]
 
     @cached_property
     def _rows(self) -> FloatArray:
-        return self.strands.between(self.state.model.x, self.near).jacobian()
+        return self.strands.between(self.model.x, self.near).jacobian()
 
     @cached_property
     def _loose(self) -> TangentModel:
         """The model that keeps lengths only."""
-        held = with_gaps_held(self.energy, self.strands, self.state.gaps)
-        return loosened(self.energy, held, self.state.model)
+        held = with_gaps_held(self.energy, self.strands, self.gaps)
+        return loosened(self.energy, held, self.model)
 
     @cached_property
     def _program(self) -> Program:
-        loose, closed = self._loose, np.arange(len(self.near)) < len(self.state.gaps)
+        loose, closed = self._loose, np.arange(len(self.near)) < len(self.gaps)
         rows = loose.coordinates.slope(self._rows.T).T
         return Program(loose.gradient, loose.hessian, self._widths, rows, closed)

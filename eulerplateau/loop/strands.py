@@ -255,6 +255,12 @@ class Strands:
             raise LinAlgError("a contact has moved too far to be followed")
         return replace(gaps, s=rows[:, 0], t=rows[:, 1]), rows[:, 2] - self.diameter
 
+    def downhill(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
+        """Return where strands are nearest from places on, however far, and gaps (k,)."""
+        slides = np.ones(len(gaps), dtype=bool)
+        rows, _ = self._followed(self._pieces(x), replace(gaps, slides=slides))
+        return Gaps(rows[:, 0], rows[:, 1], slides), rows[:, 2] - self.diameter
+
     def _followed(self, pieces: FloatArray, gaps: Gaps) -> tuple[FloatArray, FloatArray]:
         # Columns of a table would be compiled for a second time.
         s, t = np.ascontiguousarray(gaps.s), np.ascontiguousarray(gaps.t)

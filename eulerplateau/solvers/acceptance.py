@@ -1,4 +1,4 @@
-"""Whether a step of a descent is taken: what it gains, against what it promised and rounding."""
+"""Whether a step of a descent is taken: what it gains, what it promised, and rounding."""
 
 from __future__ import annotations
 

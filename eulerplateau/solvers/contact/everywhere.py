@@ -40,7 +40,7 @@ from eulerplateau.solvers.trust_region import FIRST_RADIUS
 # way so that places are looked at there. Places nearer than this, in edges, are one.
 OVERLAP = 1e-6
 _SEEN = 1e-9
-_SAME = 1e-3
+_SAME = 0.01
 # Places where strands are nearest are looked at if their gap is below so many diameters.
 _NEAR = 0.1
 # A place slides where strands are nearest within so many edges, by so much of the diameter
@@ -178,8 +178,7 @@ class Everywhere:
     def _sliding(self, x: FloatArray, gaps: Gaps) -> Gaps:
         """Return gaps, of which those slide that are nearly where strands are nearest."""
         _, widths = self.strands.at(x, gaps)
-        all_slide = replace(gaps, slides=np.ones(len(gaps), dtype=bool))
-        least, low = self.strands.at(x, all_slide)
+        least, low = self.strands.downhill(x, gaps)
         edges = np.abs(least.s - gaps.s) / self.strands.loop.rest_lengths.mean()
         near = (edges < _SLIDES) & (widths - low < _NEARER * self.strands.diameter)
         slides = gaps.slides | (near & (self.strands.parting(x, gaps) > _SPREAD))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from math import isinf
@@ -11,12 +12,13 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import Strands, close_with_lengths, strands_of
+from eulerplateau.loop import LoopEnergy, Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.acceptance import at_rounding
 from eulerplateau.solvers.contact.descent import ContactDescent
 from eulerplateau.solvers.contact.everywhere import OVERLAP, Everywhere
-from eulerplateau.solvers.contact.keeping import Touching
+from eulerplateau.solvers.contact.keeping import Keeping, Touching
+from eulerplateau.solvers.contact.program import CLOSED
 from eulerplateau.solvers.contact.record import contacts_of
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
@@ -166,8 +168,12 @@ def _record(
     spent: int,
     status: Status,
 ) -> Equilibrium:
+    energy = film.energy(problem.loop, load)
+    if status is not Status.CONVERGED:
+        state = _apart(strands, energy, state)
+        shape = film.shape(state.model.x)
     tensions = state.model.tensions
-    contacts = contacts_of(strands, film, film.energy(problem.loop, load), state)
+    contacts = contacts_of(strands, film, energy, state)
     on_edges = tensions[: len(state.model.x)]
     found = problem.equilibrium(shape, on_edges, load, status, contacts.pushes)
     found = replace(found, iterations=spent, contacts=contacts)
@@ -175,6 +181,20 @@ def _record(
     if contacts.forces.min(initial=0.0) < -state.uncertain:
         return replace(found, status=Status.STALLED)
     return found
+
+
+def _apart(strands: Strands, energy: LoopEnergy, state: Touching) -> Touching:
+    """Return a state of no equilibrium on a loop where no strands overlap, if there is one."""
+    x = state.model.x
+    if strands.smallest_gap(x, 0.0) >= -OVERLAP * strands.diameter:
+        return state
+    with suppress(LinAlgError):
+        parted = separated(strands, x)
+        if parted is not None:
+            touching, _ = strands.near(parted, CLOSED)
+            after = Keeping(energy, strands).at(parted, touching, state.radius)
+            return replace(after, risen=state.risen)
+    return state
 
 
 def _told(found: Equilibrium | None, diameter: float) -> Equilibrium | None:

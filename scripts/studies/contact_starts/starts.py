@@ -69,8 +69,8 @@ class End:
     contacts : how many there are
     pull : the lowest of their forces over the largest force in the loop; 0 without any
     rise : the energy at the end over that of the parted start, less 1
-    risen : the largest rise of what must fall in one step, the energy or the merit function,
-        over the energy at the end
+    risen : the largest rise in one step of what must fall, the energy or the merit
+        function, over the energy at the end
     seconds : CPU time of the solution
     """
 

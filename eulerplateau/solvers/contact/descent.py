@@ -77,7 +77,7 @@ class ContactDescent:
                     return state, Status.CONVERGED if settles else Status.UNRESOLVED
                 state = other
                 continue
-            after = self._advance(state)
+            after = self._advance(state) or self.keeping.cleared_between(state)
             if after is None:
                 return state, Status.STALLED
             state = after

@@ -194,7 +194,7 @@ class Keeping:
             held, _ = self.strands.at(x, gaps)
             new = self.strands.unlike(near, held)
             if not new.any():
-                far = self._far(x)
+                far = self.strands.nearest(x, -_FAR * self.strands.diameter)
                 if not len(far):
                     return x, gaps
                 if self.strands.at(x, far)[1].min() < -_DEEP * self.strands.diameter:
@@ -206,9 +206,16 @@ class Keeping:
             gaps = gaps.joined(near[new])
         return None
 
-    def _far(self, x: FloatArray) -> Gaps:
-        """Return where strands overlap far between places that are looked at."""
-        return self.strands.nearest(x, -_FAR * self.strands.diameter)
+    def cleared_between(self, state: Touching) -> Touching | None:
+        """Return the state with gaps closed where strands overlap between its places.
+
+        None if they do so nowhere, or have been mended too often.
+        """
+        low = self.strands.nearest(state.model.x, -_BETWEEN * self.strands.diameter)
+        if state.changes >= CHANGES or not len(low):
+            return None
+        kept = self.strands.unlike(state.gaps, low)
+        return self._changed(state, state.gaps[kept].joined(low), state.laid)
 
     def without(self, state: Touching, let_go: BoolArray) -> Touching:
         """Return the state with some of its gaps (k,) no longer closed."""

@@ -184,7 +184,7 @@ def _record(
 
 
 def _apart(strands: Strands, energy: LoopEnergy, state: Touching) -> Touching:
-    """Return a state of no equilibrium on a loop where no strands overlap, if there is one."""
+    """Return a state that is no equilibrium on a loop without overlaps, if one is near."""
     x = state.model.x
     if strands.smallest_gap(x, 0.0) >= -OVERLAP * strands.diameter:
         return state

@@ -48,7 +48,7 @@ _NEAR = 0.1
 # not count beside it, and those that slide to places nearer than the last are one.
 _SLIDES = 0.3
 _NEARER = 1e-5
-_SPREAD = 1e-4
+_SPREAD = 0.01
 _ONE = 0.02
 # Where a loop slides far along itself before it rests, its places wander as far.
 _STEPS = 400

@@ -143,10 +143,8 @@ class Everywhere:
             # Where two places come to be one neither can slide.
             closed = self._closed(near, slide) or self._closed(near, gaps)
             if closed is not None:
-                promises = replace(
-                    step, promised=step.promised + merit.price * steps.dearer(step)
-                )
-                gained = merit.gained(state.model, promises, closed[0], radius)
+                dearer = steps.dearer(step)
+                gained = merit.gained(state.model, step, dearer, closed[0], radius)
                 if gained is not None:
                     risen = max(state.risen, gained)
                     return replace(self._made(state, *closed), risen=risen), known

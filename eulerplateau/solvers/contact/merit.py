@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy, Strands
 from eulerplateau.solvers.acceptance import accepted, change_of_energy, noise_of
+from eulerplateau.solvers.contact.program import CLOSED
 from eulerplateau.solvers.second_variation import NewtonStep, TangentModel
 
 # How much larger than all forces together the price is where it is set.
@@ -39,26 +40,33 @@ class Merit:
         return replace(self, price=_DEARER * together)
 
     def gained(
-        self, model: TangentModel, step: NewtonStep, after: FloatArray, radius: float
+        self,
+        model: TangentModel,
+        step: NewtonStep,
+        dearer: float,
+        after: FloatArray,
+        radius: float,
     ) -> float | None:
         """Return by how much P changes from a model's loop to one that a step has led to.
 
-        None if it does not fall as the step promised, or the energy is not good there.
+        Where no strands overlap by more than what is closed: by how much the energy does, if
+        that falls as the step promised. None if neither does, or the energy is not good
+        there.
 
-        step : what it promises is the change of P, to first order in the gaps it looks at
+        dearer : by how much more strands overlap at most after the step, to first order
         """
-        gained = self._change(model.x, after)
+        gained = change_of_energy(self.energy, model.x, after)
         if gained is None or not self.energy.holds(after):
             return None
         noise = noise_of(self.energy, model.x, after - model.x, model.tensions)
+        overlap = self._overlap(after)
+        if overlap <= CLOSED and accepted(step, gained, noise, radius) is not None:
+            return gained
+        promises = replace(step, promised=step.promised + self.price * dearer)
+        gained += self.price * (overlap - self._overlap(model.x))
         noise += _ROUNDING * self.price
-        return None if accepted(step, gained, noise, radius) is None else gained
+        return None if accepted(promises, gained, noise, radius) is None else gained
 
-    def _change(self, x: FloatArray, after: FloatArray) -> float | None:
-        """Return P at another loop less that at x; None where there is no film on it."""
-        gained = change_of_energy(self.energy, x, after)
-        return None if gained is None else gained + self._cost(after) - self._cost(x)
-
-    def _cost(self, x: FloatArray) -> float:
-        """Return what the overlap of strands on a loop (n, d) costs, in alpha / L."""
-        return self.price * max(0.0, -self.strands.smallest_gap(x, 0.0))
+    def _overlap(self, x: FloatArray) -> float:
+        """Return by how much strands overlap at most on a loop (n, d), in units of L."""
+        return max(0.0, -self.strands.smallest_gap(x, 0.0))

@@ -43,12 +43,12 @@ _SEEN = 1e-9
 _SAME = 0.01
 # Places where strands are nearest are looked at if their gap is below so many diameters.
 _NEAR = 0.1
-# A place slides where strands are nearest within so many edges, by so much of the diameter
-# nearer, if they spread from there so fast (d2D/ds2, in 1 / L); others nearer than that do
-# not count beside it, and those that slide to places nearer than the last are one.
+# A place slides where strands are nearest within so many edges, by less than so much of the
+# diameter nearer, if within an edge from there they spread by more: where they spread less
+# it cannot be told where that is, nor need it be. Others nearer than that do not count beside
+# it, and those that slide to places nearer than the last are one.
 _SLIDES = 0.3
 _NEARER = 1e-5
-_SPREAD = 0.01
 _ONE = 0.02
 # Where a loop slides far along itself before it rests, its places wander as far.
 _STEPS = 400
@@ -145,6 +145,8 @@ class Everywhere:
             if closed is not None:
                 dearer = steps.dearer(step)
                 gained = merit.gained(state.model, step, dearer, closed[0], radius)
+                if gained is None and gaps is state.gaps:
+                    gained = merit.eased(state.model, step, closed[0], radius)
                 if gained is not None:
                     risen = max(state.risen, gained)
                     return replace(self._made(state, *closed), risen=risen), known
@@ -177,9 +179,10 @@ class Everywhere:
         """Return gaps, of which those slide that are nearly where strands are nearest."""
         _, widths = self.strands.at(x, gaps)
         least, low = self.strands.downhill(x, gaps)
-        edges = np.abs(least.s - gaps.s) / self.strands.loop.rest_lengths.mean()
-        near = (edges < _SLIDES) & (widths - low < _NEARER * self.strands.diameter)
-        slides = gaps.slides | (near & (self.strands.parting(x, gaps) > _SPREAD))
+        edge, little = self.strands.loop.rest_lengths.mean(), _NEARER * self.strands.diameter
+        near = (np.abs(least.s - gaps.s) < _SLIDES * edge) & (widths - low < little)
+        spread = 0.5 * self.strands.parting(x, gaps) * edge**2
+        slides = gaps.slides | (near & (spread > little))
         s, t = np.where(slides, least.s, gaps.s), np.where(slides, least.t, gaps.t)
         gaps = Gaps(s, t, slides)
         return gaps[self.strands.distinct(gaps, _ONE)]

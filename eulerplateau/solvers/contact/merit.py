@@ -15,11 +15,12 @@ from dataclasses import dataclass, replace
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import LoopEnergy, Strands
 from eulerplateau.solvers.acceptance import accepted, change_of_energy, noise_of
-from eulerplateau.solvers.contact.program import CLOSED
 from eulerplateau.solvers.second_variation import NewtonStep, TangentModel
 
 # How much larger than all forces together the price is where it is set.
 _DEARER = 2.0
+# By which part of the diameter strands may overlap where the energy alone is asked.
+_LITTLE = 1e-7
 # What rounding leaves of a gap, in units of L.
 _ROUNDING = 1e-14
 
@@ -49,24 +50,40 @@ class Merit:
     ) -> float | None:
         """Return by how much P changes from a model's loop to one that a step has led to.
 
-        Where no strands overlap by more than what is closed: by how much the energy does, if
-        that falls as the step promised. None if neither does, or the energy is not good
-        there.
+        None if it does not fall as the step promised, or the energy is not good there.
 
         dearer : by how much more strands overlap at most after the step, to first order
         """
-        gained = change_of_energy(self.energy, model.x, after)
-        if gained is None or not self.energy.holds(after):
+        gained = self._change(model, after)
+        if gained is None:
             return None
-        noise = noise_of(self.energy, model.x, after - model.x, model.tensions)
-        overlap = self._overlap(after)
-        if overlap <= CLOSED and accepted(step, gained, noise, radius) is not None:
-            return gained
+        gained += self.price * (self._overlap(after) - self._overlap(model.x))
+        noise = _noise(self.energy, model, after) + _ROUNDING * self.price
         promises = replace(step, promised=step.promised + self.price * dearer)
-        gained += self.price * (overlap - self._overlap(model.x))
-        noise += _ROUNDING * self.price
         return None if accepted(promises, gained, noise, radius) is None else gained
+
+    def eased(
+        self, model: TangentModel, step: NewtonStep, after: FloatArray, radius: float
+    ) -> float | None:
+        """Return by how much the energy changes, if strands hardly overlap after a step.
+
+        None if it does not fall as the step promised, or they overlap by more.
+        """
+        gained, little = self._change(model, after), _LITTLE * self.strands.diameter
+        if gained is None or self._overlap(after) > little:
+            return None
+        noise = _noise(self.energy, model, after)
+        return None if accepted(step, gained, noise, radius) is None else gained
+
+    def _change(self, model: TangentModel, after: FloatArray) -> float | None:
+        """Return the change of energy; None where that is not good."""
+        gained = change_of_energy(self.energy, model.x, after)
+        return gained if self.energy.holds(after) else None
 
     def _overlap(self, x: FloatArray) -> float:
         """Return by how much strands overlap at most on a loop (n, d), in units of L."""
         return max(0.0, -self.strands.smallest_gap(x, 0.0))
+
+
+def _noise(energy: LoopEnergy, model: TangentModel, after: FloatArray) -> float:
+    return noise_of(energy, model.x, after - model.x, model.tensions)

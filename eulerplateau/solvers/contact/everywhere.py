@@ -2,14 +2,16 @@
 
 Held at one place an edge they overlap between two places, most of all near the end of a
 stretch: a force stands there, and no place does. So where the gap is least in between it is
-held as well, and places are let go at which strands would pull, until no gap is negative.
+held as well, and places are let go at which strands would pull, until no gap is negative
+by more than a millionth of the diameter.
 That is an exchange method for infinitely many inequalities (Hettich and Kortanek 1993,
-section 7), each step of it one of the quadratic program, and none that does not lower the
-merit function (merit.py). Near the minimum a place slides with where the gap is least: a
-step is Newton's then, and nothing overlaps after it (their section 7.3, local reduction).
+section 7), each step of it one of the quadratic program that lowers the merit function
+(merit.py), or Newton's. Near the minimum a place slides with where the gap is least, and
+nothing overlaps after a step (their section 7.3, local reduction); but for strands so close
+along each other that this may be anywhere.
 
 What this comes to is the least energy of loops on which no gap is negative, whatever places
-it began with. Its own are as many, or fewer, and nearer to each other at the ends.
+it began with. Its own are nearer to each other at the ends.
 """
 
 from __future__ import annotations
@@ -45,8 +47,8 @@ _SAME = 0.01
 _NEAR = 0.1
 # A place slides where strands are nearest within so many edges, by less than so much of the
 # diameter nearer, if within an edge from there they spread by more: where they spread less
-# it cannot be told where that is, nor need it be. Others nearer than that do not count beside
-# it, and those that slide to places nearer than the last are one.
+# it cannot be told where that is, nor need it be. Others nearer than that do not count
+# beside it, and those that slide to places nearer than the last are one.
 _SLIDES = 0.3
 _NEARER = 1e-5
 _ONE = 0.02
@@ -130,6 +132,9 @@ class Everywhere:
     ) -> tuple[Touching, Gaps] | None:
         """Return the state after a step that lowers the merit function; None without one.
 
+        Or the energy, if it keeps its places and strands hardly overlap then: where these
+        hang together the merit function sees overlaps that do not count.
+
         known : places where strands have overlapped on the way, and may again; returned
             with those where they would have after steps that were not taken
         """
@@ -179,7 +184,8 @@ class Everywhere:
         """Return gaps, of which those slide that are nearly where strands are nearest."""
         _, widths = self.strands.at(x, gaps)
         least, low = self.strands.downhill(x, gaps)
-        edge, little = self.strands.loop.rest_lengths.mean(), _NEARER * self.strands.diameter
+        edge = self.strands.loop.rest_lengths.mean()
+        little = _NEARER * self.strands.diameter
         near = (np.abs(least.s - gaps.s) < _SLIDES * edge) & (widths - low < little)
         spread = 0.5 * self.strands.parting(x, gaps) * edge**2
         slides = gaps.slides | (near & (spread > little))

@@ -23,12 +23,17 @@ class Contacts:
     gaps : (k,) float, the distance less the diameter
     angles : (k,) float, the acute angle between the strands' tangents, degrees
     at_a_point : (k,) bool
-        Whether strands cross there; else they lie beside each other, and it is one vertex.
+        Whether strands cross there; else they lie beside each other.
+    slides : (k,) bool
+        Whether the gap is least there by s too, and is held where it is; else it is held
+        where s is. So does what crosses, and what lies beside each other at the minimum.
     uncertain : float, what a force can be off by
     pushes : (n_b, 3) float, what the contacts add to the energy's gradient
     smallest_gap : float, of all places, touching or not; infinite beyond half the diameter
     unstable_let_go : int or None
         The Morse index with the doubtful contacts let go; None where none is doubtful.
+    risen : float
+        By how much, in one step of the solver, what must fall has risen at most: rounding.
     """
 
     s: FloatArray
@@ -38,10 +43,12 @@ class Contacts:
     gaps: FloatArray
     angles: FloatArray
     at_a_point: BoolArray
+    slides: BoolArray
     uncertain: float
     pushes: FloatArray
     smallest_gap: float
     unstable_let_go: int | None = None
+    risen: float = 0.0
 
     def __len__(self) -> int:
         """Return k."""
@@ -54,7 +61,7 @@ class Contacts:
     @property
     def places(self) -> Gaps:
         """The gaps that are closed."""
-        return Gaps(self.s, self.t, self.at_a_point)
+        return Gaps(self.s, self.t, self.slides)
 
     @property
     def force(self) -> float:

@@ -35,6 +35,7 @@ from eulerplateau.loop.strand_kernels import (
     settle_each,
 )
 from eulerplateau.loop.stretches import ALONG, first_of_each, of_one_strand, offsets
+from eulerplateau.loop.twist import passed
 
 # Strands touch at a point where they part at least so fast, d2D/ds2 in units of 1 / L:
 # a loop's curvature is 2 pi. One that touches at a point does so until half of that.
@@ -48,6 +49,8 @@ _BESIDE = 0.75
 _FOLLOWED = 5.0
 # Below which gap, in diameters, strands that touch may lie beside each other.
 _FLAT = 1e-3
+# Into so many chords edges are cut where their own may be too coarse.
+_FINER = 8
 # What closes a gap is spread over so much of the loop: over an edge it would be a kink.
 _SPREAD = 0.03
 
@@ -98,6 +101,22 @@ class Strands:
     def curve(self, x: FloatArray) -> CubicSpline:
         """Return the smooth curve through vertices x (n, d)."""
         return CubicSpline(self.knots, np.vstack([x, x[:1]]), bc_type="periodic")
+
+    def passed(self, x: FloatArray, after: FloatArray) -> bool:
+        """Return whether a strand has passed through another on a short way, x (n, d).
+
+        Chords may where their curves do not: of these finer ones are asked then.
+        """
+        if not passed(x, after):
+            return False
+        return passed(self._finer @ x, self._finer @ after)
+
+    @cached_property
+    def _finer(self) -> FloatArray:
+        """The weights (m n, n) of vertices at m places of each edge."""
+        parts = np.arange(_FINER) / _FINER
+        lengths = self.loop.rest_lengths[:, None]
+        return self.weights((self.knots[:-1, None] + lengths * parts).ravel())
 
     def _pieces(self, x: FloatArray) -> FloatArray:
         """Return the curve's cubics (n, 4, d): a spline made anew costs ten times more."""
@@ -244,6 +263,12 @@ class Strands:
         if len(gaps) and float(off.max()) > _FOLLOWED * self.loop.rest_lengths.max():
             raise LinAlgError("a contact has moved too far to be followed")
         return replace(gaps, s=rows[:, 0], t=rows[:, 1]), rows[:, 2] - self.diameter
+
+    def downhill(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
+        """Return where strands are nearest from places on, however far, and gaps (k,)."""
+        slides = np.ones(len(gaps), dtype=bool)
+        rows, _ = self._followed(self._pieces(x), replace(gaps, slides=slides))
+        return Gaps(rows[:, 0], rows[:, 1], slides), rows[:, 2] - self.diameter
 
     def _followed(self, pieces: FloatArray, gaps: Gaps) -> tuple[FloatArray, FloatArray]:
         # Columns of a table would be compiled for a second time.

@@ -4,7 +4,8 @@
     problem.py    what is solved; start.py: where from; equilibrium.py: what comes out,
                   when it counts as converged, and what each status advises
     newton.py     by Newton on the loop; chooses among quadratic.py, soap.py, in_plane/
-    descent.py    downhill to a minimum, on trust_region.py; primal_dual.py: the fast end
+    descent.py    downhill to a minimum, on trust_region.py; acceptance.py: which steps are
+                  taken; primal_dual.py: the fast end
     second_variation.py  Hessian and spectrum at one loop, by tangent_coordinates.py;
                   models.py, quadratic_models.py: of which part, large_loops/ for large ones
     correction.py  an equilibrium to a higher order than its mesh's

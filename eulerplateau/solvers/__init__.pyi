@@ -1,13 +1,10 @@
-from .contact.keeping import CLOSED as CLOSED, Keeping as Keeping, Touching as Touching
-from .contact.program import Program as Program
+from .acceptance import change_of_energy as change_of_energy, noise_of as noise_of
+from .contact.keeping import Keeping as Keeping, Touching as Touching
+from .contact.program import CLOSED as CLOSED, Program as Program
 from .contact.record import contacts_at as contacts_at
 from .contact.separation import separated as separated
 from .correction import Corrected as Corrected, corrected as corrected
-from .descent import (
-    Descent as Descent,
-    change_of_energy as change_of_energy,
-    noise_of as noise_of,
-)
+from .descent import Descent as Descent
 from .equilibrium import (
     LARGEST_LOAD as LARGEST_LOAD,
     RESIDUAL_TOLERANCE as RESIDUAL_TOLERANCE,

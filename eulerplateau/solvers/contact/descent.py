@@ -12,16 +12,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-
-import numpy as np
+from typing import Protocol
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.interruption import heed
-from eulerplateau.loop import Gaps, LoopEnergy, Strands, with_gaps_held
-from eulerplateau.solvers.contact.everywhere import Everywhere
-from eulerplateau.solvers.contact.keeping import CHANGES, CLOSED, Keeping, Touching
-from eulerplateau.solvers.contact.program import Program
-from eulerplateau.solvers.descent import (
+from eulerplateau.loop import Gaps, LoopEnergy, Strands
+from eulerplateau.solvers.acceptance import (
     SMALLEST_RADIUS,
     accepted,
     at_rounding,
@@ -29,28 +25,40 @@ from eulerplateau.solvers.descent import (
     change_of_energy,
     noise_of,
 )
+from eulerplateau.solvers.contact.keeping import CHANGES, Keeping, Touching
+from eulerplateau.solvers.contact.program import CLOSED
+from eulerplateau.solvers.contact.steps import Steps
 from eulerplateau.solvers.equilibrium import Status
-from eulerplateau.solvers.second_variation import (
-    NewtonStep,
-    TangentModel,
-    loosened,
-    stability,
-)
+from eulerplateau.solvers.second_variation import NewtonStep, TangentModel, stability
 from eulerplateau.solvers.trust_region import FIRST_RADIUS
 
 # Gaps of less than so many diameters are looked at when a step is made.
 _REACH = 1.0
 
 
+class LastStage(Protocol):
+    """What becomes of a loop at rest: everywhere.Everywhere."""
+
+    def settled(self, state: Touching) -> tuple[Touching, bool]:
+        """Return what it comes to, and whether that is a minimum."""
+
+    def again(self, state: Touching, x: FloatArray) -> Touching | None:
+        """Return the minimum near x (n, d) of another energy's; None if there is none."""
+
+
 @dataclass(frozen=True)
 class ContactDescent:
-    """A descent of one energy, as solvers.descent.Descent; `energy` knows no contact."""
+    """A descent of one energy, as solvers.descent.Descent; `energy` knows no contact.
+
+    Where it has come to rest the `last` stage goes on, if there is one.
+    """
 
     energy: LoopEnergy
     strands: Strands
     max_iterations: int
     observe: Callable[[FloatArray], None] = lambda x_loop: None
     ends: Callable[[TangentModel], bool] = lambda model: False
+    last: LastStage | None = None
 
     def run(self, x: FloatArray, before: Touching | None = None) -> tuple[Touching, Status]:
         """Descend from a loop (n, d) on which no strands overlap.
@@ -63,10 +71,13 @@ class ContactDescent:
             if at_rounding(state.model) and stability(state.model).n_unstable == 0:
                 other = self.keeping.mended(state)
                 if other is None:
-                    return self._everywhere.settled(state) or state, Status.CONVERGED
+                    if self.last is None:
+                        return state, Status.CONVERGED
+                    state, settles = self.last.settled(state)
+                    return state, Status.CONVERGED if settles else Status.UNRESOLVED
                 state = other
                 continue
-            after = self._advance(state)
+            after = self._advance(state) or self.keeping.cleared_between(state)
             if after is None:
                 return state, Status.STALLED
             state = after
@@ -79,8 +90,8 @@ class ContactDescent:
         if before is None:
             return self.keeping.at(x, self.strands.near(x, CLOSED)[0], FIRST_RADIUS)
         before = replace(before, iteration=0)
-        if before.changes >= CHANGES:
-            settled = self._everywhere.again(before, x)
+        if self.last is not None and before.changes >= CHANGES:
+            settled = self.last.again(before, x)
             if settled is not None:
                 return settled
         state = self.keeping.moved(before, x, before.gaps, FIRST_RADIUS)
@@ -91,16 +102,13 @@ class ContactDescent:
         """How gaps are kept closed."""
         return Keeping(self.energy, self.strands)
 
-    @cached_property
-    def _everywhere(self) -> Everywhere:
-        return Everywhere(self.energy, self.strands, at_rounding)
-
     def _advance(self, state: Touching) -> Touching | None:
         """Return the state after one accepted step; None if no step lowers the energy."""
         radius = state.radius
-        steps = _Steps(self.energy, self.strands, state)
+        near = self._near(state)
+        steps = Steps(self.energy, self.strands, state.model, state.gaps, near)
         while radius > SMALLEST_RADIUS:
-            step, gaps = steps.within(radius)
+            step, gaps = _within(steps, radius)
             reached = self._reached(state, step, gaps, radius)
             if reached is not None:
                 return reached
@@ -119,64 +127,29 @@ class ContactDescent:
         gained = change_of_energy(self.energy, x, after)
         noise = noise_of(self.energy, x, after - x, state.model.tensions)
         wider = None if gained is None else accepted(step, gained, noise, radius)
-        return None if wider is None else self.keeping.moved(state, after, gaps, wider)
+        if gained is None or wider is None:
+            return None
+        moved = self.keeping.moved(state, after, gaps, wider)
+        return replace(moved, risen=max(state.risen, gained))
 
-
-@dataclass(frozen=True)
-class _Steps:
-    """The steps that may be taken from a state."""
-
-    energy: LoopEnergy
-    strands: Strands
-    state: Touching
-
-    def within(self, radius: float) -> tuple[NewtonStep, Gaps]:
-        """Return the step of at most such a radius, with the gaps that it closes.
-
-        It keeps those of the state; if strands overlap then to first order, it is that of
-        the program.
-        """
-        model, gaps = self.state.model, self.state.gaps
-        step = model.newton_step(radius)
-        if step is None:
-            step = bounded_step(self.energy, model, radius)
-        if len(self._near) > len(gaps) and self._overlap(step.moved):
-            found = self._program.step(radius)
-            if found is not None:
-                coefficients, closed = found
-                return self._loose.step(coefficients), self._near[closed]
-        return step, gaps
-
-    def _overlap(self, moved: FloatArray) -> bool:
-        widths = self._widths + self._rows @ moved.ravel()
-        others = np.arange(len(widths)) >= len(self.state.gaps)
-        return bool((widths[others] < -CLOSED).any())
-
-    @cached_property
-    def _near(self) -> Gaps:
-        """Gaps that are closed, and others that are near behind them."""
-        state, x = self.state, self.state.model.x
-        reach = _REACH * self.strands.diameter
+    def _near(self, state: Touching) -> Gaps:
+        """Return gaps that are closed, and others that are near behind them."""
+        x, reach = state.model.x, _REACH * self.strands.diameter
         near, _ = self.strands.near(x, reach, state.beside)
         held, _ = self.strands.at(x, state.gaps)
         return held.joined(near[self.strands.unlike(near, held)])
 
-    @cached_property
-    def _widths(self) -> FloatArray:
-        return self.strands.at(self.state.model.x, self._near)[1]
 
-    @cached_property
-    def _rows(self) -> FloatArray:
-        return self.strands.between(self.state.model.x, self._near).jacobian()
+def _within(steps: Steps, radius: float) -> tuple[NewtonStep, Gaps]:
+    """Return the step of at most such a radius, with the gaps that it closes.
 
-    @cached_property
-    def _loose(self) -> TangentModel:
-        """The model that keeps lengths only."""
-        held = with_gaps_held(self.energy, self.strands, self.state.gaps)
-        return loosened(self.energy, held, self.state.model)
-
-    @cached_property
-    def _program(self) -> Program:
-        loose, closed = self._loose, np.arange(len(self._near)) < len(self.state.gaps)
-        rows = loose.coordinates.slope(self._rows.T).T
-        return Program(loose.gradient, loose.hessian, self._widths, rows, closed)
+    It keeps those of the state; if strands overlap then to first order, it is that of the
+    program.
+    """
+    model, gaps = steps.model, steps.gaps
+    step = model.newton_step(radius)
+    if step is None:
+        step = bounded_step(steps.energy, model, radius)
+    if len(steps.near) > len(gaps) and steps.overlaps(step.moved):
+        return steps.programmed(radius) or (step, gaps)
+    return step, gaps

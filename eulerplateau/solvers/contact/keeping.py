@@ -22,15 +22,12 @@ from eulerplateau.loop import (
     LoopEnergy,
     Strands,
     contact_spreads,
-    passed,
     with_gaps_held,
 )
 from eulerplateau.solvers.second_variation import TangentModel, tangent_model
 from eulerplateau.solvers.trust_region import FIRST_RADIUS
 
-# A gap, in units of L, that is closed, and by which part of the diameter strands may
-# overlap before they are pushed back.
-CLOSED = 1e-10
+# By which part of the diameter strands may overlap before they are pushed back.
 _DEEP = 0.25
 # Rounds in which gaps are closed that the closing of others has made negative.
 _ROUNDS = 6
@@ -39,6 +36,8 @@ _PULLS = 1e-9
 # By which part of the diameter strands may overlap between vertices at which they are held
 # along each other; and how often that is mended, or strands that part are held at points.
 _BETWEEN = 1e-3
+# By which part they are not left to on the way.
+_FAR = 0.05
 CHANGES = 3
 # Strands touch at a point where they spread so fast from there, d2D/ds2 in 1 / L, and do so
 # until they spread less than that; and than that in their least distance, on the way.
@@ -50,7 +49,8 @@ class Touching:
     """A loop with the gaps that are closed on it, and the model that keeps them.
 
     At places of `laid` strands touched at a point on the way, and lay along each other. So
-    many `changes` of the kinds of contacts have led to it.
+    many `changes` of the kinds of contacts have led to it. In no step has what must fall
+    `risen` by more than that, alpha / L: the energy, or the merit function of merit.py.
     """
 
     model: TangentModel
@@ -59,6 +59,7 @@ class Touching:
     radius: float
     iteration: int
     changes: int = 0
+    risen: float = 0.0
 
     @property
     def beside(self) -> Gaps:
@@ -94,7 +95,9 @@ class Keeping:
     ) -> Touching:
         """Return the state that follows on another loop, or with other gaps closed."""
         wide = state.radius if radius is None else radius
-        return self._touching(x, gaps, state.laid, wide, state.iteration + 1, state.changes)
+        spent = state.iteration + 1, state.changes
+        after = self._touching(x, gaps, state.laid, wide, *spent)
+        return replace(after, risen=state.risen)
 
     def _changed(self, state: Touching, gaps: Gaps, laid: Gaps) -> Touching | None:
         """Return the state with other gaps closed in place of its own, if they can be."""
@@ -104,7 +107,8 @@ class Keeping:
         if cleared is None:
             return None
         spent = state.iteration + 1, state.changes + 1
-        return self._touching(*cleared, laid, FIRST_RADIUS, *spent)
+        after = self._touching(*cleared, laid, FIRST_RADIUS, *spent)
+        return replace(after, risen=state.risen)
 
     def _touching(
         self,
@@ -183,18 +187,35 @@ class Keeping:
         """
         for _ in range(_ROUNDS):
             closed = self.closed(x, gaps)
-            if closed is None or passed(before, closed[0]):
+            if closed is None or self.strands.passed(before, closed[0]):
                 return None
             x, gaps = closed
             near, widths = self.strands.near(x, NEGATIVE, beside)
             held, _ = self.strands.at(x, gaps)
             new = self.strands.unlike(near, held)
             if not new.any():
-                return x, gaps
+                far = self.strands.nearest(x, -_FAR * self.strands.diameter)
+                if not len(far):
+                    return x, gaps
+                if self.strands.at(x, far)[1].min() < -_DEEP * self.strands.diameter:
+                    return None
+                gaps = gaps[self.strands.unlike(held, far)].joined(far)
+                continue
             if widths[new].min() < -_DEEP * self.strands.diameter:
                 return None
             gaps = gaps.joined(near[new])
         return None
+
+    def cleared_between(self, state: Touching) -> Touching | None:
+        """Return the state with gaps closed where strands overlap between its places.
+
+        None if they do so nowhere, or have been mended too often.
+        """
+        low = self.strands.nearest(state.model.x, -_BETWEEN * self.strands.diameter)
+        if state.changes >= CHANGES or not len(low):
+            return None
+        kept = self.strands.unlike(state.gaps, low)
+        return self._changed(state, state.gaps[kept].joined(low), state.laid)
 
     def without(self, state: Touching, let_go: BoolArray) -> Touching:
         """Return the state with some of its gaps (k,) no longer closed."""

@@ -25,6 +25,8 @@ from eulerplateau.arrays import BoolArray, FloatArray
 # By which parts of the largest entry of H, over that of J^T J, closed gaps are stiffened,
 # one after another, where H is not definite without that.
 _STIFFENED = (1e-6, 1e-4, 1e-2)
+# A gap, in units of L, that is closed.
+CLOSED = 1e-10
 # A step is not made to fit its radius better than this.
 _FITS = 0.5
 # A gap, in units of L, that is not closed for less.

@@ -31,10 +31,12 @@ def contacts_of(
         forces=state.forces,
         gaps=widths,
         angles=between.angles(),
-        at_a_point=gaps.slides,
+        at_a_point=gaps.slides & ~strands.laid_along(x, gaps),
+        slides=gaps.slides,
         uncertain=state.uncertain,
         pushes=film.lift(pushes.reshape(x.shape)),
         smallest_gap=strands.smallest_gap(x, 0.5 * strands.diameter),
+        risen=state.risen,
     )
     if not found.doubtful.any():
         return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from math import isinf
@@ -11,11 +12,13 @@ from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import FilmOfLoop
-from eulerplateau.loop import Strands, close_with_lengths, strands_of
+from eulerplateau.loop import LoopEnergy, Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
+from eulerplateau.solvers.acceptance import at_rounding
 from eulerplateau.solvers.contact.descent import ContactDescent
-from eulerplateau.solvers.contact.everywhere import OVERLAP
-from eulerplateau.solvers.contact.keeping import Touching
+from eulerplateau.solvers.contact.everywhere import OVERLAP, Everywhere
+from eulerplateau.solvers.contact.keeping import Keeping, Touching
+from eulerplateau.solvers.contact.program import CLOSED
 from eulerplateau.solvers.contact.record import contacts_of
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
@@ -63,7 +66,7 @@ def search(
         lost = found is None or found.status is Status.STALLED
         if lost and problem.film.dimension != 2:
             other = _from_tied(problem, strands, x_loop, *more)
-            if found is None or (other is not None and other.converged):
+            if found is None or _is_better(problem, start, x_loop, load, other):
                 found = other
 
         def again(shape: Shape, spent: int) -> Equilibrium | None:
@@ -71,6 +74,24 @@ def search(
             return _near(problem, strands, shape, film.lift(x), x, load, left, observe)
 
         return _told(_resolved(problem, found, again), strands.diameter)
+
+
+def _is_better(
+    problem: Problem,
+    start: Shape,
+    x_loop: FloatArray,
+    load: float,
+    other: Equilibrium | None,
+) -> bool:
+    """Return whether a film has converged to one no higher than that at the start."""
+    if other is None or not other.converged:
+        return False
+    film = problem.film
+    try:
+        shape = film.prepared(film.carried(start, x_loop))
+    except LinAlgError:  # none is spanned there
+        return True
+    return other.energy <= problem.energy(shape, load)
 
 
 def _from_tied(
@@ -90,7 +111,9 @@ def _from_tied(
         return None
     energy = tied.energy(problem.loop, load)
     try:
-        state, _ = ContactDescent(energy, strands, max_iterations).run(x_loop)
+        last = Everywhere(energy, strands, at_rounding)
+        descent = ContactDescent(energy, strands, max_iterations, last=last)
+        state, _ = descent.run(x_loop)
     except LinAlgError:
         return None
     x, more = state.model.x, (load, max_iterations, observe)
@@ -117,7 +140,8 @@ def _near(
         nonlocal state, x_loop
         energy = film.energy(problem.loop, load)
         ends = partial(elsewhere, film)
-        descent = ContactDescent(energy, strands, left, observe, ends)
+        last = Everywhere(energy, strands, at_rounding)
+        descent = ContactDescent(energy, strands, left, observe, ends, last)
         state, status = descent.run(x_loop, state)
         x_loop = state.model.x
         # A film that gets stuck away from where it was made may not, made anew.
@@ -144,8 +168,12 @@ def _record(
     spent: int,
     status: Status,
 ) -> Equilibrium:
+    energy = film.energy(problem.loop, load)
+    if status is not Status.CONVERGED:
+        state = _apart(strands, energy, state)
+        shape = film.shape(state.model.x)
     tensions = state.model.tensions
-    contacts = contacts_of(strands, film, film.energy(problem.loop, load), state)
+    contacts = contacts_of(strands, film, energy, state)
     on_edges = tensions[: len(state.model.x)]
     found = problem.equilibrium(shape, on_edges, load, status, contacts.pushes)
     found = replace(found, iterations=spent, contacts=contacts)
@@ -153,6 +181,20 @@ def _record(
     if contacts.forces.min(initial=0.0) < -state.uncertain:
         return replace(found, status=Status.STALLED)
     return found
+
+
+def _apart(strands: Strands, energy: LoopEnergy, state: Touching) -> Touching:
+    """Return a state that is no equilibrium on a loop without overlaps, if one is near."""
+    x = state.model.x
+    if strands.smallest_gap(x, 0.0) >= -OVERLAP * strands.diameter:
+        return state
+    with suppress(LinAlgError):
+        parted = separated(strands, x)
+        if parted is not None:
+            touching, _ = strands.near(parted, CLOSED)
+            after = Keeping(energy, strands).at(parted, touching, state.radius)
+            return replace(after, risen=state.risen)
+    return state
 
 
 def _told(found: Equilibrium | None, diameter: float) -> Equilibrium | None:

@@ -1,37 +1,61 @@
-"""Strands that overlap are parted, the loop's lengths kept, before energy is looked at."""
+"""Strands that overlap are parted, the loop's lengths kept, before energy is looked at.
+
+The rod is made thin enough, and swells to its diameter: each time, strands that then
+overlap are moved apart until they touch. Where that comes to no end, and where the loop
+turns back on itself within so short a piece that the rod overlaps there, the loop unbends:
+downhill in its bending energy, no strands overlapping on the way.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop import NEGATIVE, HeldGaps, Lengths, Strands, passed
+from eulerplateau.loop import (
+    NEGATIVE,
+    Bending,
+    Gaps,
+    HeldGaps,
+    Lengths,
+    LoopEnergy,
+    Strands,
+    rigid_motions,
+)
+from eulerplateau.solvers.contact.descent import ContactDescent
+from eulerplateau.solvers.second_variation import TangentModel
 
 _ROUNDS = 40
 # The rod swells by this factor at a time, from where its strands are nearest.
 _SWELLS = 1.25
+# How often a loop unbends, by so many steps, before its strands are parted again; and by
+# how many at most where it turns back on itself.
+_UNBENDS = 40
+_STEPS, _MOST = 5, 300
+# Places on each piece of loop where it may turn back, all of them at most, and how often
+# they are refined.
+_PLACES, _ALL_PLACES, _FINER = 16, 20_000, 3
+# By which part of the diameter strands may overlap between places they are parted at, and
+# within how many edges two places are the same.
+_OVERLAP, _SAME = 1e-8, 0.02
 
 
 def separated(strands: Strands, x: FloatArray) -> FloatArray | None:
-    """Return a loop near x (n, d) whose strands do not overlap; None if there is none.
-
-    The rod is made thin enough, and swells to its diameter: each time, strands that then
-    overlap are moved apart until they touch.
-    """
-    least = thinnest(strands, x)
-    diameter = strands.diameter
-    swelling = strands.diameter if least >= diameter else _SWELLS * least
-    if not swelling > 0.0:
-        return None
-    while True:
-        swollen = replace(strands, diameter=min(swelling, diameter))
-        after = _parted(swollen, x)
-        if after is None or passed(x, after):
+    """Return a loop near x (n, d) on which nothing overlaps; None if there is none."""
+    for _ in range(_UNBENDS):
+        x, thick = _swollen(strands, x)
+        if not thick > 0.0:
             return None
-        x = after
-        if swelling >= diameter:
+        if thick < strands.diameter:
+            thin = replace(strands, diameter=thick / _SWELLS)
+            x = _unbent(thin, x, _STEPS, lambda model: False)
+        elif turns_back(strands, x):
+            x = _unbent(strands, x, _MOST, lambda model: not turns_back(strands, model.x))
+        else:
             return x
-        swelling *= _SWELLS
+    return None
 
 
 def thinnest(strands: Strands, x: FloatArray) -> float:
@@ -40,10 +64,40 @@ def thinnest(strands: Strands, x: FloatArray) -> float:
     return strands.diameter + float(widths.min(initial=0.0))
 
 
+def turns_back(strands: Strands, x: FloatArray) -> bool:
+    """Return whether a loop (n, d) is nearer to itself than its diameter at a bend.
+
+    That is at places `apart` from each other along it, as near as such that may touch.
+    """
+    curve, apart, whole = strands.curve(x), strands.apart, float(strands.knots[-1])
+    spacing = max(min(whole / len(x), apart) / _PLACES, whole / _ALL_PLACES)
+    s = np.arange(0.0, whole, spacing)
+    for _ in range(_FINER):
+        distances = np.linalg.norm(curve(s % whole) - curve((s + apart) % whole), axis=1)
+        lowest = int(distances.argmin())
+        if distances[lowest] < strands.diameter:
+            return True
+        s = s[lowest] + np.linspace(-spacing, spacing, 2 * _PLACES + 1)
+        spacing /= _PLACES
+    return False
+
+
+def _swollen(strands: Strands, x: FloatArray) -> tuple[FloatArray, float]:
+    """Return a loop near x (n, d), and for how thick a rod its strands are parted on it."""
+    diameter, thick = strands.diameter, thinnest(strands, x)
+    while thick < diameter:
+        swelling = min(_SWELLS * thick, diameter)
+        after = _parted(replace(strands, diameter=swelling), x)
+        if after is None or strands.passed(x, after):
+            break
+        x, thick = after, swelling
+    return x, thick
+
+
 def _parted(strands: Strands, x: FloatArray) -> FloatArray | None:
+    """Return a loop near x (n, d) on which no strands overlap; None if none is found."""
     lengths = Lengths(strands.loop)
-    near, _ = strands.near(x, NEGATIVE)
-    held = near
+    held = near = _overlaps(strands, x)
     for _ in range(_ROUNDS):
         if not len(near):
             return x
@@ -51,10 +105,29 @@ def _parted(strands: Strands, x: FloatArray) -> FloatArray | None:
         if after is None:
             return None
         x = after
-        near, _ = strands.near(x, NEGATIVE)
+        near = _overlaps(strands, x)
         held, _ = strands.at(x, held)
-        new = near[strands.unlike(near, held)]
+        new = near[strands.unlike(near, held, _SAME)]
         if not len(new):
             return x
         held = held.joined(new)
     return None
+
+
+def _overlaps(strands: Strands, x: FloatArray) -> Gaps:
+    """Return where strands overlap: once an edge, and where they do so most in between."""
+    near, _ = strands.near(x, NEGATIVE)
+    least = strands.nearest(x, -_OVERLAP * strands.diameter)
+    return near.joined(least[strands.unlike(least, near, _SAME)])
+
+
+def _unbent(
+    strands: Strands, x: FloatArray, steps: int, ends: Callable[[TangentModel], bool]
+) -> FloatArray:
+    """Return what a loop comes to that unbends by so many steps, or until it `ends`."""
+    loop = strands.loop
+    energy = LoopEnergy(
+        {"bending": Bending(loop)}, Lengths(loop), loop.mean_lengths, rigid_motions
+    )
+    state, _ = ContactDescent(energy, strands, steps, ends=ends).run(x)
+    return state.model.x

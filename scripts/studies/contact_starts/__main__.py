@@ -9,7 +9,7 @@ import click
 import numpy as np
 
 from scripts.studies.common import markdown_table, processes
-from scripts.studies.contact_starts.starts import FILMS, End, case, run
+from scripts.studies.contact_starts.starts import FAILURES, FILMS, End, case, run
 
 STARTS = 500
 
@@ -34,9 +34,7 @@ def _counts(ends: Sequence[End]) -> Iterator[list[str]]:
         "starts",
         "overlapped first",
         "in contact",
-        "overlaps",
-        "pulls",
-        "rises",
+        *FAILURES,
     ]
 
     def group(end: End) -> tuple[int, str, str]:
@@ -49,24 +47,32 @@ def _counts(ends: Sequence[End]) -> Iterator[list[str]]:
             len(some),
             sum(end.overlaps[0] > 0.0 for end in some),
             sum(end.contacts > 0 for end in some),
-            *(failures.count(name) for name in ("overlaps", "pulls", "rises")),
+            *map(failures.count, FAILURES),
         ]
         yield [FILMS[film], kind, status, *map(str, numbers)]
 
 
 def _extremes(ends: Sequence[End]) -> Iterator[list[str]]:
-    """Yield the worst of a film's converged starts, and what all of them took."""
-    yield ["film", "overlap / d, parted", "overlap / d", "pull", "rise", "CPU s each"]
+    """Yield the worst of a film's starts, whatever their status, and what they took."""
+    yield [
+        "film",
+        "overlap / d, parted",
+        "overlap / d",
+        "pull",
+        "merit rise",
+        "rise",
+        "CPU s each",
+    ]
     for film in FILMS:
         every = [end for end in ends if end.case.film == film]
-        some = [end for end in every if end.converged]
         worst: list[Callable[[End], float]] = [
             lambda end: end.overlaps[1],
             lambda end: end.overlaps[2],
             lambda end: 0.0 - end.pull,
+            lambda end: end.risen,
             lambda end: end.rise,
         ]
-        shown = [f"{max(map(of, some), default=np.nan):.1e}" for of in worst]
+        shown = [f"{np.nanmax([np.nan, *map(of, every)]):.1e}" for of in worst]
         mean = np.mean([end.seconds for end in every]) if every else np.nan
         yield [film, *shown, f"{mean:.2f}"]
 

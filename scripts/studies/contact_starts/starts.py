@@ -33,8 +33,10 @@ _KICKS = 100.0
 _HARMONICS = 3
 _FLATTEST = 0.01
 # By which part of the diameter strands may overlap; which part of the largest force a
-# contact may pull with; what the energy may rise by from rounding.
-OVERLAP, PULL, RISE = 1e-5, RESIDUAL_TOLERANCE, 1e-9
+# contact may pull with; what the energy may rise by from rounding, and in one step what
+# must fall.
+OVERLAP, PULL, RISE, MERIT = 1e-5, RESIDUAL_TOLERANCE, 1e-9, 1e-12
+FAILURES = ("not parted", "overlaps", "pulls", "merit rises", "rises")
 
 
 @dataclass(frozen=True)
@@ -63,11 +65,12 @@ class End:
     status : the equilibrium's; "not parted" where no loop without overlaps is near the
         start, or the name of an exception
     overlaps : by which part of the diameter strands overlap, by brute force: at the start,
-        when they have been parted, where a bend sharper than the rod still counts, at the
-        end; not positive where they do not
+        when they have been parted, at the end; not positive where they do not
     contacts : how many there are
     pull : the lowest of their forces over the largest force in the loop; 0 without any
     rise : the energy at the end over that of the parted start, less 1
+    risen : the largest rise in one step of what must fall, the energy or the merit
+        function, over the energy at the end
     seconds : CPU time of the solution
     """
 
@@ -77,6 +80,7 @@ class End:
     contacts: int = 0
     pull: float = 0.0
     rise: float = np.nan
+    risen: float = 0.0
     seconds: float = 0.0
 
     @property
@@ -86,10 +90,12 @@ class End:
 
     @property
     def failures(self) -> list[str]:
-        """What is not as it should be: "overlaps", "pulls", "rises"."""
+        """What is not as it should be, of `FAILURES`."""
         found = {
+            "not parted": not self.overlaps[1] <= OVERLAP,
             "overlaps": self.overlaps[2] > OVERLAP,
             "pulls": self.pull < -PULL,
+            "merit rises": self.risen > MERIT,
             "rises": self.rise > RISE,
         }
         return [name for name, failed in found.items() if failed]
@@ -113,12 +119,13 @@ def case(seed: int) -> Case:
 
 
 @cache
-def _disk(aspect: float) -> Disk:
+def disk_of(aspect: float) -> Disk:
+    """Return the mesh of a disk, or of an ellipse so many times as long as it is wide."""
     disk = round_disk(EDGES)
     return Disk.from_triangles(disk.x * [aspect, 1.0, 1.0], disk.triangles)
 
 
-def _loop(disk: Disk, case: Case) -> FloatArray:
+def loop_of(disk: Disk, case: Case) -> FloatArray:
     """Return the loop (n, 3) that a case begins with, however long its edges are."""
     rng = np.random.default_rng(case.seed)
     if case.kind == "drawn":
@@ -147,11 +154,11 @@ def run(case: Case) -> End:
 
 
 def _ended(case: Case) -> End:
-    disk = _disk(case.aspect)
+    disk = disk_of(case.aspect)
     problem = Problem(disk, case.film, diameter=case.diameter)
     tied = problem.tied_film()
     assert tied is not None
-    loop = close_with_lengths(problem.loop, _loop(disk, case))
+    loop = close_with_lengths(problem.loop, loop_of(disk, case))
     if loop is None:
         return End(case, "no loop")
     first = _overlap(case, loop)
@@ -170,13 +177,14 @@ def _ended(case: Case) -> End:
         contacts=0 if found.contacts is None else len(found.contacts),
         pull=_pull(found),
         rise=found.energy / before - 1,
+        risen=0.0 if found.contacts is None else found.contacts.risen / found.energy,
         seconds=seconds,
     )
 
 
 def _overlap(case: Case, x_loop: FloatArray) -> float:
     """Return by which part of the diameter strands overlap, negative where they do not."""
-    rest_lengths = _disk(case.aspect).rest_lengths
+    rest_lengths = disk_of(case.aspect).rest_lengths
     least = least_distance(x_loop, rest_lengths, 0.5 * pi * case.diameter)
     return 1 - least / case.diameter
 

@@ -61,7 +61,7 @@ def test_a_rod_that_does_not_resist_twist_leaves_the_plane() -> None:
     saddle, problem = flat(POINT), in_space(None)
     assert saddle.contacts is not None
     contacts = saddle.contacts
-    gaps = Gaps(contacts.s, contacts.t, contacts.at_a_point)
+    gaps = Gaps(contacts.s, contacts.t, contacts.slides)
     energy = loop_energy(problem, POINT, saddle.shape)
     held = with_gaps_held(energy, strands_of(problem.loop), gaps)
     model = tangent_model(held, saddle.shape.x_loop)

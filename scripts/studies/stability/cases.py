@@ -7,6 +7,7 @@ along, so that the same solver has the same work to do.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 
@@ -90,12 +91,14 @@ def condition(problem: Problem, found: Equilibrium) -> float:
     """Return the largest over the smallest eigenvalue of the second variation, by size.
 
     Rigid motions left out. It is the factor by which rounding of the forces may be
-    magnified in the positions.
+    magnified in the positions; infinite where a motion costs nothing, as of a square.
     """
     energy = problem.film.of_loop(found.shape).energy(problem.loop, found.load)
     model = tangent_model(energy, found.shape.x_loop)
     values = np.abs(model.eigenvalues)
-    return float(values.max() / values.min()) if len(values) else 1.0
+    if not len(values):
+        return 1.0
+    return float(values.max() / values.min()) if values.min() else math.inf
 
 
 # The same film, otherwise given -----------------------------------------------------------

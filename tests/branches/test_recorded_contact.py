@@ -85,7 +85,8 @@ def in_line(edges: int) -> BranchPoint:
     return kept_apart(point)
 
 
-@pytest.mark.parametrize("edges", [24, pytest.param(48, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("edges", [24, 48])
 def test_a_sweep_comes_to_the_film_that_is_recorded(edges: int) -> None:
     """Up to what a sweep may leave of overlaps, times the force: that is dE/dd."""
     there = in_line(edges)

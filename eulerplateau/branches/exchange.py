@@ -21,6 +21,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import BoolArray, FloatArray
+from eulerplateau.branches.gap_bounds import single
 from eulerplateau.interruption import heed
 from eulerplateau.loop import (
     NO_GAPS,
@@ -140,7 +141,7 @@ def _sharpened(state: State, rest: Rest[State]) -> State | None:
             continue
         low = found.nearest(-_SHARP)
         if not len(low):
-            return rest(x, replace(gaps, slides=_alone(found.strands, gaps)))
+            return rest(x, replace(gaps, slides=single(found.strands, gaps)))
         gaps = gaps.joined(_sliding(low))
     return None
 
@@ -148,13 +149,6 @@ def _sharpened(state: State, rest: Rest[State]) -> State | None:
 def _joined(strands: Strands, gaps: Gaps, others: Gaps) -> Gaps:
     """Return gaps, and behind them those of others that are not beside them."""
     return gaps.joined(others[strands.unlike(others, gaps, _BESIDE)])
-
-
-def _alone(strands: Strands, gaps: Gaps) -> BoolArray:
-    """Return which places (k,) have no other beside them."""
-    contact = strands.contacts(gaps)
-    alone: BoolArray = np.bincount(contact)[contact] == 1
-    return alone
 
 
 def _sliding(gaps: Gaps) -> Gaps:

@@ -146,11 +146,11 @@ class GapBounds:
         edge = strands.loop.rest_lengths.max()
         at = self._at(x).gaps
         lies = strands.laid_along(x, at)
-        single = ~at.slides & self._single(at) & (strands.spreading(x, at) >= _FLAT)
-        crosses = single & strands.crossing(x, at)
-        nearest, _ = strands.at(x, replace(at, slides=at.slides | single))
-        reach = np.where(single, _CENTRED, _FOLLOWED) * edge
-        moved = (np.abs(nearest.s - gaps.s) > reach) & (at.slides | single)
+        points = ~at.slides & single(strands, at) & (strands.spreading(x, at) >= _FLAT)
+        crosses = points & strands.crossing(x, at)
+        nearest, _ = strands.at(x, replace(at, slides=at.slides | points))
+        reach = np.where(points, _CENTRED, _FOLLOWED) * edge
+        moved = (np.abs(nearest.s - gaps.s) > reach) & (at.slides | points)
         if not (lies | crosses | moved).any():
             return self.touch
         slides = (at.slides & ~lies) | crosses
@@ -203,8 +203,9 @@ class GapBounds:
         """Return by how much strands (k,) spread more than flat where a contact slides."""
         return np.where(held.slides, self.strands.spreading(x, held) - _FLAT, np.inf)
 
-    def _single(self, gaps: Gaps) -> BoolArray:
-        """Return which places (k,) have no other beside them."""
-        contact = self.strands.contacts(gaps)
-        single: BoolArray = np.bincount(contact)[contact] == 1
-        return single
+
+def single(strands: Strands, gaps: Gaps) -> BoolArray:
+    """Return which places (k,) have no other beside them."""
+    contact = strands.contacts(gaps)
+    found: BoolArray = np.bincount(contact)[contact] == 1
+    return found

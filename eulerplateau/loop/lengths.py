@@ -72,9 +72,7 @@ def project_lengths(
     x, error, s = x_loop, np.inf, loop.rest_lengths
     for _ in range(_PROJECTION_STEPS):
         chords = loop.chords(x)
-        lengths = np.sqrt(np.vecdot(chords, chords))
-        # As Loop.constraint does, which would measure the edges once more.
-        excess = (lengths - s) * (lengths + s) / (2 * s)
+        excess = loop.excess(np.sqrt(np.vecdot(chords, chords)))
         previous, error = error, float(np.abs(excess / s).max())
         if not np.isfinite(error) or error > 1e3:
             return None

@@ -114,10 +114,13 @@ class Loop:
         Formed as (|e| - s)(|e| + s) / (2 s): the difference of squares would lose half
         of the digits that are left near zero.
         """
-        lengths = np.linalg.norm(self.chords(x_loop), axis=1)
+        return self.excess(np.linalg.norm(self.chords(x_loop), axis=1))
+
+    def excess(self, lengths: FloatArray) -> FloatArray:
+        """Return the same of edges that are so long (n_b,)."""
         s = self.rest_lengths
-        excess: FloatArray = (lengths - s) * (lengths + s) / (2 * s)
-        return excess
+        found: FloatArray = (lengths - s) * (lengths + s) / (2 * s)
+        return found
 
     def length_error(self, x_loop: FloatArray) -> float:
         """Return max |l_v / s_v - 1|."""

@@ -34,9 +34,6 @@ _OF_DIAMETER = 1 / 2
 _OF_LOOP = 1 / 3
 # A film is refined once in one solve, and laid on its mesh again where its strands part.
 _TIMES = 2
-# By which part of the diameter strands may overlap: between places that are held beside
-# each other that may be more than elsewhere.
-_MOST = 10 * OVERLAP
 
 
 def search(
@@ -73,7 +70,7 @@ def search(
             x, left = film.project(shape.x_loop), max_iterations - spent
             return _near(problem, strands, shape, film.lift(x), x, load, left, observe)
 
-        return _told(_resolved(problem, found, again), strands.diameter)
+        return _resolved(problem, found, again)
 
 
 def _is_better(
@@ -195,13 +192,6 @@ def _apart(strands: Strands, energy: LoopEnergy, state: Touching) -> Touching:
             after = Keeping(energy, strands).at(parted, touching, state.radius)
             return replace(after, risen=state.risen)
     return state
-
-
-def _told(found: Equilibrium | None, diameter: float) -> Equilibrium | None:
-    """Return what was found; UNRESOLVED if its strands are not kept apart everywhere."""
-    if found is None or not found.converged or found.overlap <= _MOST * diameter:
-        return found
-    return replace(found, status=Status.UNRESOLVED)
 
 
 def _resolved(

@@ -7,6 +7,7 @@ that such meshes resolve.
 from __future__ import annotations
 
 from itertools import groupby
+from operator import attrgetter
 
 from scripts.studies.error_vs_time.arithmetic import fitted_order
 from scripts.studies.error_vs_time.records import Point
@@ -18,7 +19,7 @@ _COARSEST = 72
 def growth(known: list[Point]) -> list[str]:
     """Return the table of all solvers on three meshes or more, its lines."""
     rows = []
-    for (scene, solver, mesh), group in groupby(known, _ladder):
+    for (scene, solver, mesh), group in groupby(known, attrgetter("ladder")):
         ladder = [p for p in group if p.first.loop_edges >= _COARSEST]
         if mesh not in ("uniform", "graded") or len(ladder) < 3:
             continue
@@ -37,7 +38,3 @@ def growth(known: list[Point]) -> list[str]:
         "|---|---|---|---|---:|",
         *rows,
     ]
-
-
-def _ladder(point: Point) -> tuple[str, str, str]:
-    return point.first.scene, point.first.solver, point.first.mesh

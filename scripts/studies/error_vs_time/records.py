@@ -88,6 +88,11 @@ class Point:
     wall: float
     memory: float
 
+    @property
+    def ladder(self) -> tuple[str, str, str]:
+        """The scene, solver and kind of mesh: one after the other, meshes get finer."""
+        return self.first.scene, self.first.solver, self.first.mesh
+
 
 def with_errors(scene: list[Measurement]) -> list[Measurement]:
     """Return the measurements of one scene with their errors filled in.

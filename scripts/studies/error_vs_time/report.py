@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import groupby
+from operator import attrgetter
 
 from scripts.studies.common import machine
 from scripts.studies.error_vs_time.arithmetic import (
@@ -127,10 +128,7 @@ def _orders(known: list[Point]) -> list[str]:
         "|---|---|---|---:|---:|---:|",
     ]
 
-    def key(p: Point) -> tuple[str, str, str]:
-        return p.first.scene, p.first.solver, p.first.mesh
-
-    for (scene, solver, mesh), group in groupby(known, key):
+    for (scene, solver, mesh), group in groupby(known, attrgetter("ladder")):
         ladder = [p for p in group if p.first.error > 0]
         if mesh == HARMONICS or len(ladder) < 3:
             continue

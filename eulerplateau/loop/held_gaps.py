@@ -103,7 +103,7 @@ class HeldGaps:
         """
         rows = self.jacobian(x)
         moved = (self.strands.compliance @ force).ravel()
-        moves = self._moves(rows, x.shape)
+        moves = self.moves(rows, x.shape)
         found: FloatArray = -cho_solve(cho_factor(rows @ moves), rows @ moved)
         return found
 
@@ -111,13 +111,13 @@ class HeldGaps:
         self, rows: FloatArray, excess: FloatArray, shape: tuple[int, int]
     ) -> FloatArray:
         """Return the least displacement (n, d) that changes the equations by so much."""
-        moves = self._moves(rows, shape)
+        moves = self.moves(rows, shape)
         shares = cho_solve(cho_factor(rows @ moves), excess)
         closing: FloatArray = (moves @ shares).reshape(shape)
         return closing
 
-    def _moves(self, rows: FloatArray, shape: tuple[int, int]) -> FloatArray:
-        """Return the displacements (n d, m) that the equations' rows are dual to."""
+    def moves(self, rows: FloatArray, shape: tuple[int, int]) -> FloatArray:
+        """Return the displacements (n d, m) of that norm that rows (m, d n) are dual to."""
         n, d = shape
         by_vertex: FloatArray = np.ascontiguousarray(
             rows.reshape(-1, n, d).transpose(1, 0, 2)

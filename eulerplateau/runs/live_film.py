@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,6 +32,8 @@ _LOST = 1e-4
 _KICK = 0.03
 _PUSHES = 0.03, 0.1, 0.2
 _MODES = 2
+# So many films that were left are gone back to.
+_LEFT = 4
 # R.m.s. distance up to which two states are one, as of a catalogue.
 _SAME = 0.01
 
@@ -63,7 +66,7 @@ class LiveFilm:
         self.varied = varied_by(spec)
         self._values = {each.key: each.value for each in self.varied}
         self._varied = {each.parameter for each in self.varied}
-        self._left: Equilibrium | None = None
+        self._left: deque[Equilibrium] = deque(maxlen=_LEFT)
         self._steps = 0
         self.begin()
 
@@ -91,7 +94,7 @@ class LiveFilm:
     def other(self) -> Visited | None:
         """Return another stable state at the same values, None if none was come to.
 
-        Sought from the film that was left at the last jump, or when this was last asked;
+        Sought from films that were left at jumps, or when this was asked, the last first;
         then from pushes along the softest modes, either way.
         """
         here, alike = self._found, likeness_of(self._problem, _SAME)
@@ -100,7 +103,7 @@ class LiveFilm:
             if not found.is_minimum:
                 continue
             if alike.distance(here.shape.x_loop, found.shape.x_loop) > _SAME:
-                self._left = here
+                self._left.appendleft(here)
                 return self._come_to(found, "other")
         return None
 
@@ -118,8 +121,7 @@ class LiveFilm:
 
     def _elsewhere(self) -> Iterator[Equilibrium | Shape]:
         """Yield starts from which another state may be come to."""
-        if self._left is not None:
-            yield self._left
+        yield from tuple(self._left)
         here = self._found
         if not here.converged:
             return
@@ -152,7 +154,7 @@ class LiveFilm:
         if way in ("follow", "kick") and self._found.converged:
             jumped = here.lost_since(self._rates) > _LOST * abs(found.energy)
         if jumped:
-            self._left = self._found
+            self._left.appendleft(self._found)
         self._problem, self._found, self._rates, self._told = problem, found, here, told
         self._steps += 1
         self.at = self._visited(way, jumped)

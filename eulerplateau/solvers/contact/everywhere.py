@@ -28,7 +28,7 @@ from eulerplateau.interruption import heed
 from eulerplateau.loop import Gaps, LoopEnergy, Strands, from_one_strand, with_gaps_held
 from eulerplateau.solvers.acceptance import SMALLEST_RADIUS
 from eulerplateau.solvers.contact.keeping import CHANGES, Touching
-from eulerplateau.solvers.contact.merit import Merit
+from eulerplateau.solvers.contact.merit import LITTLE, Merit
 from eulerplateau.solvers.contact.steps import Steps
 from eulerplateau.solvers.second_variation import (
     NewtonStep,
@@ -47,10 +47,12 @@ _SAME = 0.01
 _NEAR = 0.1
 # A place slides where strands are nearest within so many edges, by less than so much of the
 # diameter nearer, if within an edge from there they spread by more: where they spread less
-# it cannot be told where that is, nor need it be. Others nearer than that do not count
+# it cannot be told where that is, nor need it be, and one that slid stays where it is if
+# they come to spread by less than that part of it. Others nearer than that do not count
 # beside it, and those that slide to places nearer than the last are one.
 _SLIDES = 0.3
 _NEARER = 1e-5
+_STAYS = 0.5
 _ONE = 0.02
 # Where a loop slides far along itself before it rests, its places wander as far.
 _STEPS = 400
@@ -175,8 +177,8 @@ class Everywhere:
         self, state: Touching, steps: Steps, radius: float
     ) -> tuple[NewtonStep, Gaps] | None:
         """Return the step of at most such a radius, and the gaps to close after it."""
-        step = state.model.newton_step(radius)
-        if step is None or not _pushes(state) or steps.overlaps(step.moved):
+        step, little = state.model.newton_step(radius), LITTLE * self.strands.diameter
+        if step is None or not _pushes(state) or steps.overlaps(step.moved, little):
             return steps.programmed(radius)
         return step, state.gaps
 
@@ -188,7 +190,7 @@ class Everywhere:
         little = _NEARER * self.strands.diameter
         near = (np.abs(least.s - gaps.s) < _SLIDES * edge) & (widths - low < little)
         spread = 0.5 * self.strands.parting(x, gaps) * edge**2
-        slides = gaps.slides | (near & (spread > little))
+        slides = (spread > np.where(gaps.slides, _STAYS * little, little)) & near
         s, t = np.where(slides, least.s, gaps.s), np.where(slides, least.t, gaps.t)
         gaps = Gaps(s, t, slides)
         return gaps[self.strands.distinct(gaps, _ONE)]

@@ -20,7 +20,7 @@ from eulerplateau.solvers.second_variation import NewtonStep, TangentModel
 # How much larger than all forces together the price is where it is set.
 _DEARER = 2.0
 # By which part of the diameter strands may overlap where the energy alone is asked.
-_LITTLE = 1e-7
+LITTLE = 1e-7
 # What rounding leaves of a gap, in units of L.
 _ROUNDING = 1e-14
 
@@ -69,7 +69,7 @@ class Merit:
 
         None if it does not fall as the step promised, or they overlap by more.
         """
-        gained, little = self._change(model, after), _LITTLE * self.strands.diameter
+        gained, little = self._change(model, after), LITTLE * self.strands.diameter
         if gained is None or self._overlap(after) > little:
             return None
         noise = _noise(self.energy, model, after)

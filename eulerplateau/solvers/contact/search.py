@@ -18,7 +18,6 @@ from eulerplateau.solvers.acceptance import at_rounding
 from eulerplateau.solvers.contact.descent import ContactDescent
 from eulerplateau.solvers.contact.everywhere import OVERLAP, Everywhere
 from eulerplateau.solvers.contact.keeping import Keeping, Touching
-from eulerplateau.solvers.contact.program import CLOSED
 from eulerplateau.solvers.contact.record import contacts_of
 from eulerplateau.solvers.contact.separation import separated
 from eulerplateau.solvers.equilibrium import Equilibrium, Status, with_stability
@@ -188,7 +187,9 @@ def _apart(strands: Strands, energy: LoopEnergy, state: Touching) -> Touching:
     with suppress(LinAlgError):
         parted = separated(strands, x)
         if parted is not None:
-            touching, _ = strands.near(parted, CLOSED)
+            held, _ = strands.at(parted, state.gaps)
+            near = strands.nearest(parted, OVERLAP * strands.diameter)
+            touching = held.joined(near[strands.unlike(near, held)])
             after = Keeping(energy, strands).at(parted, touching, state.radius)
             return replace(after, risen=state.risen)
     return state

@@ -12,10 +12,12 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import (
     NEGATIVE,
+    NO_GAPS,
     Bending,
     Gaps,
     HeldGaps,
@@ -25,6 +27,7 @@ from eulerplateau.loop import (
     rigid_motions,
 )
 from eulerplateau.solvers.contact.descent import ContactDescent
+from eulerplateau.solvers.contact.program import least_forces
 from eulerplateau.solvers.second_variation import TangentModel
 
 _ROUNDS = 40
@@ -96,28 +99,49 @@ def _swollen(strands: Strands, x: FloatArray) -> tuple[FloatArray, float]:
 
 def _parted(strands: Strands, x: FloatArray) -> FloatArray | None:
     """Return a loop near x (n, d) on which no strands overlap; None if none is found."""
-    lengths = Lengths(strands.loop)
-    held = near = _overlaps(strands, x)
+    lengths, known = Lengths(strands.loop), NO_GAPS
     for _ in range(_ROUNDS):
-        if not len(near):
-            return x
-        after = HeldGaps(lengths, strands, held).project(x)
+        near = _overlaps(strands, x)
+        new = near[strands.unlike(near, known, _SAME)]
+        try:
+            known, widths = strands.at(x, known)
+            if not len(new) and widths.min(initial=0.0) >= NEGATIVE:
+                return x
+            known = known.joined(new)
+            after = _opened(HeldGaps(lengths, strands, known), x)
+        except LinAlgError:
+            return None
         if after is None:
             return None
         x = after
-        near = _overlaps(strands, x)
-        held, _ = strands.at(x, held)
-        new = near[strands.unlike(near, held, _SAME)]
-        if not len(new):
-            return x
-        held = held.joined(new)
     return None
+
+
+def _opened(held: HeldGaps, x: FloatArray) -> FloatArray | None:
+    """Return the loop next to x (n, d) on which none of the gaps is negative; None if lost.
+
+    Lengths are kept. A quadratic program tells, to first order, which gaps are closed for
+    that, by forces that push: places that are close to each other cannot all be.
+    """
+    strands, n, rows = held.strands, len(x), held.jacobian(x)
+    moves = held.moves(rows, x.shape)
+    gram, (_, widths) = rows @ moves, strands.at(x, held.gaps)
+    excess, across = strands.loop.constraint(x), gram[:n, n:]
+    shares = cho_solve(cho_factor(gram[:n, :n]), np.column_stack([excess, across]))
+    widths = widths - across.T @ shares[:, 0]
+    forces = least_forces(gram[n:, n:] - across.T @ shares[:, 1:], widths)
+    closed = HeldGaps(held.lengths, strands, held.gaps[forces > 0.0]).project(x)
+    if closed is not None:
+        return closed
+    tensions = -shares[:, 0] - shares[:, 1:] @ forces
+    moved = moves @ np.append(tensions, forces)
+    return held.lengths.project(x + moved.reshape(x.shape))
 
 
 def _overlaps(strands: Strands, x: FloatArray) -> Gaps:
     """Return where strands overlap: once an edge, and where they do so most in between."""
     near, _ = strands.near(x, NEGATIVE)
-    least = strands.nearest(x, -_OVERLAP * strands.diameter)
+    least = strands.nearest(x, min(NEGATIVE, -_OVERLAP * strands.diameter))
     return near.joined(least[strands.unlike(least, near, _SAME)])
 
 

@@ -26,11 +26,11 @@ class Steps:
     gaps: Gaps
     near: Gaps
 
-    def overlaps(self, moved: FloatArray) -> bool:
-        """Return whether a step (n, d) makes others overlap, to first order."""
+    def overlaps(self, moved: FloatArray, little: float = CLOSED) -> bool:
+        """Return whether a step (n, d) makes others overlap by more, to first order."""
         widths = self._widths + self._rows @ moved.ravel()
         others = np.arange(len(widths)) >= len(self.gaps)
-        return bool((widths[others] < -CLOSED).any())
+        return bool((widths[others] < -little).any())
 
     def dearer(self, step: NewtonStep) -> float:
         """Return by how much more strands overlap at most after it, to first order."""

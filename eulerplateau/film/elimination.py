@@ -53,6 +53,11 @@ class _Front:
         return block.T
 
 
+Packed = tuple[
+    IntArray, IntArray, IntArray, IntArray, IntArray, IntArray, IntArray, IntArray
+]
+
+
 @dataclass(frozen=True)
 class Elimination:
     """The order of a matrix's rows, parts first and kept rows last, and all fronts.
@@ -78,6 +83,28 @@ class Elimination:
             np.array([front.start for front in fronts]),
             np.cumsum([0, *(len(front.around) for front in fronts)]),
             np.concatenate([front.around for front in fronts]),
+        )
+
+    @cached_property
+    def packed(self) -> Packed:
+        """The same for compiled loops (front_kernels.py), fronts end to end.
+
+        `hung`, then by a pointer which of the matrix's entries go where in each block, and
+        of each front onto which other its remainder goes, and where in that one's block.
+        """
+        fronts = [front for _, front in self.filled]
+        number = {k: at for at, (k, _) in enumerate(self.filled)}
+        onto, into = np.full(len(fronts), len(fronts)), [front.around for front in fronts]
+        for at, front in enumerate(fronts):
+            for before, place in front.left:
+                onto[number[before]], into[number[before]] = at, place
+        return (
+            *self.hung,
+            np.cumsum([0, *(len(front.entries) for front in fronts)]),
+            np.concatenate([front.entries for front in fronts]),
+            np.concatenate([front.places for front in fronts]),
+            onto,
+            np.concatenate(into),
         )
 
 

@@ -34,7 +34,9 @@ class IndefiniteFactor:
 
     def solve(self, rhs: FloatArray) -> FloatArray:
         """Return the solution (n, m) for right-hand sides (n, m)."""
-        return solve_symmetric_rows(*self._packed, self._order, rhs)
+        found = np.empty(rhs.shape)
+        solve_symmetric_rows(*self._packed, self._order, rhs, found)
+        return found
 
 
 def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> IndefiniteFactor:
@@ -43,11 +45,9 @@ def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> Indef
     Raises LinAlgError if a pivot vanishes. The caller sees to it that BLAS has one thread.
     """
     # Factors and responses F_11^-1 F_12 at once where they are read: copies are as large.
-    sizes = [front.size for _, front in elimination.filled]
-    starts, *_ = elimination.hung
-    own = np.diff(starts, append=len(elimination.order))
-    data, pivots = np.empty(int(own @ sizes)), np.empty(int(own.sum()), dtype=np.int64)
-    fill = _fill if max(sizes) <= _COMPILED else _fill_by_lapack
+    rows, size = elimination.room
+    pivots, data = np.empty(rows, dtype=np.int64), np.empty(size)
+    fill = _fill if elimination.largest <= _COMPILED else _fill_by_lapack
     negative = fill(elimination, entries, pivots, data)
     packed = (*elimination.hung, pivots, data)
     return IndefiniteFactor(negative, elimination.order, packed)

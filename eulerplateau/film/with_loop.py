@@ -138,7 +138,7 @@ class FilmWithLoop:
         n_i, n_b = len(self.strip.interior), len(self.strip.loop)
         # A node for each height, and one for each vertex of the loop.
         loop = n_i + np.arange(n_b)
-        reach = [np.roll(loop, -step) for step in range(1, _REACH + 1)]
+        reach = [n_i + np.arange(step, n_b + step) % n_b for step in range(1, _REACH + 1)]
         row = np.concatenate([self._node(row), *(_REACH * [loop]), *reach])
         column = np.concatenate([self._node(column), *reach, *(_REACH * [loop])])
         graph = graph_of(row, column, n_i + n_b)

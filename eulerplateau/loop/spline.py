@@ -92,8 +92,9 @@ class Splines:
     @cached_property
     def _around(self) -> IntArray:
         """The vertex (n, 3) before each, itself, and the one after it."""
-        at = np.arange(len(self.lengths))
-        return np.stack([np.roll(at, 1), at, np.roll(at, -1)], axis=1)
+        n = len(self.lengths)
+        around: IntArray = (np.arange(n)[:, None] + np.array([-1, 0, 1])) % n
+        return around
 
     @cached_property
     def _jumps(self) -> FloatArray:

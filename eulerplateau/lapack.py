@@ -30,7 +30,8 @@ def _compiled(name: str, public: str) -> Any:
 
 _lapack, _blas = _compiled("_flapack", "lapack"), _compiled("_fblas", "blas")
 
-dgeqrf, dgtsv = _lapack.dgeqrf, _lapack.dgtsv
+dgelsy, dgtsv = _lapack.dgelsy, _lapack.dgtsv
+dgeqrf, dormqr = _lapack.dgeqrf, _lapack.dormqr
 dpotrf, dpotrs = _lapack.dpotrf, _lapack.dpotrs
 dpttrf, dpttrs = _lapack.dpttrf, _lapack.dpttrs
 dsygst, dtrtrs = _lapack.dsygst, _lapack.dtrtrs

@@ -11,6 +11,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.control import Direction, StepControl
 from eulerplateau.branches.family import Family
 from eulerplateau.interruption import heed
+from eulerplateau.lapack import dgelsy, dgeqrf, dormqr
 from eulerplateau.loop import LoopEnergy
 from eulerplateau.solvers import (
     RESIDUAL_TOLERANCE,
@@ -22,6 +23,7 @@ from eulerplateau.solvers import (
 
 _CORRECTIONS = 12
 NOISE = 1e-10  # relative singular value below which forces are rounding
+_COLUMNS = 32  # of LAPACK's blocks
 
 
 @dataclass(frozen=True)
@@ -204,7 +206,11 @@ def _correct(
 def _solve(system: FloatArray, rhs: FloatArray, smallest: float) -> FloatArray:
     if smallest == 0.0:
         return np.linalg.solve(system, rhs).astype(np.float64)
-    return np.linalg.lstsq(system, rhs, rcond=smallest)[0].astype(np.float64)
+    # By a QR that finds the rank; singular values would take ten times as long.
+    n = len(rhs)
+    free, room = np.zeros(n, dtype=np.int32), 3 * n + _COLUMNS * (n + 1)
+    found: FloatArray = dgelsy(system, rhs[:, None], free, smallest, room)[1][:, 0]
+    return found
 
 
 def branch_direction(
@@ -221,7 +227,12 @@ def branch_direction(
     step has landed on a branch that crosses.
     """
     wide = np.column_stack([model.hessian, slope * control.unit])
-    null = np.linalg.qr(wide.T, mode="complete")[0][:, -1]
+    # The last column of the complete Q alone: of its reflections, what they make of one.
+    m = len(slope)
+    reflections, scales, _, _ = dgeqrf(wide.T, lwork=_COLUMNS * m)
+    last_column = np.zeros((m + 1, 1))
+    last_column[m] = 1.0
+    null = dormqr("L", "N", reflections, scales, last_column, _COLUMNS)[0][:, 0]
     found = make_direction(model, null[:-1], null[-1] * control.unit, control, drift)
     return found if inner(model, found, last, control) >= 0 else found.reversed()
 

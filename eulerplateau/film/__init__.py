@@ -10,7 +10,8 @@
                   along normals (heights_film.py, normal_moves.py) or freely (free_film.py),
                   to a discrete minimal surface (minimal_surface.py); area_term.py: its
                   energy
-    with_loop.py  film and loop in one sparse matrix, factorised by indefinite.py
+    with_loop.py  film and loop in one sparse matrix, factorised by indefinite.py;
+                  strip.py: which vertices follow the loop
     curved_film.py  the film on a smooth loop, of curved triangles (curved_triangles.py)
     repair.py     thin triangles replaced (flips.py); harmonic.py: how it follows its loop
     plane.py      a soap film kept in its plane; plane_mesh.py: how its mesh follows

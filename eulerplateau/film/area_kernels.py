@@ -164,3 +164,24 @@ def cotangents(edges: FloatArray, areas: FloatArray, found: FloatArray) -> None:
                 for d in range(3):
                     dot += edges[t, i, d] * edges[t, j, d]
                 found[t, i, j] = dot / (4.0 * areas[t]) if areas[t] > 0.0 else 0.0
+
+
+@njit(cache=True)
+def lie_on_each_other(
+    normals: FloatArray, areas: FloatArray, beyond: IntArray, cosine: float, least: float
+) -> bool:
+    """Return whether the normals of two neighbours differ by that cosine or more.
+
+    beyond : (n_t, 3), the neighbours, or -1. Triangles of no larger area count for nothing.
+    """
+    for t in range(beyond.shape[0]):
+        for j in range(3):
+            other = beyond[t, j]
+            if other < t or areas[t] <= least or areas[other] <= least:
+                continue
+            along = 0.0
+            for d in range(3):
+                along += normals[t, d] * normals[other, d]
+            if along < cosine:
+                return True
+    return False

@@ -62,7 +62,9 @@ class Condensation:
 
         n_i = len(forces)
         rows = np.ascontiguousarray(forces).reshape(n_i, -1)
-        return solve_rows(*self._parts.packed, self._order, rows).reshape(forces.shape)
+        found = np.empty(rows.shape)
+        solve_rows(*self._parts.packed, self._order, rows, found)
+        return found.reshape(forces.shape)
 
     def carry(self, forces: FloatArray) -> FloatArray:
         """Return f_b - L_bi L_ii^-1 f_i (n_b, m): what forces (n, m) come to on the loop.

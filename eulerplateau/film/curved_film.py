@@ -39,7 +39,7 @@ class SmoothFilmAtRest:
     Attributes
     ----------
     area : float
-    gradient : (n_b, 6, 3) float, of its area by the loop's data
+    gradient : (6, n_b, 3) float, of its area by the loop's data
     heights : (size,) float, of its nodes over where they follow the loop: to begin the next
     """
 
@@ -135,7 +135,7 @@ class CurvedNeighbour:
         inside = film.gradient.copy()
         inside[self._middles] = 0.0
         gradient = loop.middles_gradient(film.gradient[self._middles])
-        gradient[:, 0] += self.plane.local.carry(self.triangles.gathered(inside))
+        gradient[0] += self.plane.local.carry(self.triangles.gathered(inside))
         return SmoothFilmAtRest(film.area, gradient, heights)
 
     def _step(self, film: CurvedFilm, forces: FloatArray) -> FloatArray:

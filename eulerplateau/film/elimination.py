@@ -53,6 +53,11 @@ class _Front:
         return block.T
 
 
+Packed = tuple[
+    IntArray, IntArray, IntArray, IntArray, IntArray, IntArray, IntArray, IntArray
+]
+
+
 @dataclass(frozen=True)
 class Elimination:
     """The order of a matrix's rows, parts first and kept rows last, and all fronts.
@@ -78,6 +83,39 @@ class Elimination:
             np.array([front.start for front in fronts]),
             np.cumsum([0, *(len(front.around) for front in fronts)]),
             np.concatenate([front.around for front in fronts]),
+        )
+
+    @cached_property
+    def largest(self) -> int:
+        """Rows of the largest block of these."""
+        return max(front.size for _, front in self.filled)
+
+    @cached_property
+    def room(self) -> tuple[int, int]:
+        """Rows that are eliminated, and entries of them and of what is beside them."""
+        own = [(front.stop - front.start, front.size) for _, front in self.filled]
+        return sum(n for n, _ in own), sum(n * size for n, size in own)
+
+    @cached_property
+    def packed(self) -> Packed:
+        """The same for compiled loops (front_kernels.py), fronts end to end.
+
+        `hung`, then by a pointer which of the matrix's entries go where in each block, and
+        of each front onto which other its remainder goes, and where in that one's block.
+        """
+        fronts = [front for _, front in self.filled]
+        number = {k: at for at, (k, _) in enumerate(self.filled)}
+        onto, into = np.full(len(fronts), len(fronts)), [front.around for front in fronts]
+        for at, front in enumerate(fronts):
+            for before, place in front.left:
+                onto[number[before]], into[number[before]] = at, place
+        return (
+            *self.hung,
+            np.cumsum([0, *(len(front.entries) for front in fronts)]),
+            np.concatenate([front.entries for front in fronts]),
+            np.concatenate([front.places for front in fronts]),
+            onto,
+            np.concatenate(into),
         )
 
 
@@ -108,8 +146,7 @@ def plan(
     ):
         mine = entries[first[number] : first[number + 1]]
         below = [fronts[before].around for before in waiting[number]]
-        touched = np.unique(np.concatenate([column[mine], *below]))
-        around = touched[np.searchsorted(touched, stop) :].astype(np.int64)
+        around = _each_once(np.concatenate([column[mine], *below]), stop)
         size = stop - start + len(around)
         local[start:stop] = np.arange(stop - start)
         local[around] = np.arange(stop - start, size)
@@ -123,6 +160,14 @@ def plan(
         if len(around):
             waiting[int(np.searchsorted(stops, around[0], side="right"))].append(number)
     return Elimination(order, tuple(fronts))
+
+
+def _each_once(numbers: IntArray, least: int) -> IntArray:
+    """Return each of the numbers (m,) from the least on, in order (np.unique is slower)."""
+    ordered = np.sort(numbers[numbers >= least])
+    first = np.ones(len(ordered), dtype=bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=first[1:])
+    return ordered[first].astype(np.int64)
 
 
 def summed(place: IntArray, values: FloatArray, n: int) -> FloatArray:

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.film import area_kernels
 from eulerplateau.film.condensation import factorise
 from eulerplateau.film.repair import mend_triangles
 from eulerplateau.film.tiling import Tiling
@@ -27,11 +28,9 @@ _EQUAL = np.array([[1.0, -0.5, -0.5], [-0.5, 1.0, -0.5], [-0.5, -0.5, 1.0]])
 def is_folded(tiling: Tiling, x: FloatArray) -> bool:
     """Return whether neighbouring triangles of a film (n_v, 3) lie on each other."""
     sides = tiling.sides(x)
-    there = sides.areas > _NO_AREA * sides.areas.sum()
-    beyond = tiling.neighbours
-    joined = (beyond >= 0) & there[:, None] & there[beyond]
-    turned = np.einsum("td,tjd->tj", sides.normals, sides.normals[beyond])
-    return bool((turned[joined] < _ON_EACH_OTHER).any())
+    least, cosine = _NO_AREA * float(sides.areas.sum()), _ON_EACH_OTHER
+    triangles = sides.normals, sides.areas, tiling.neighbours
+    return area_kernels.lie_on_each_other(*triangles, cosine, least)
 
 
 def laid_anew(tiling: Tiling, x: FloatArray) -> tuple[Tiling, FloatArray]:

@@ -17,10 +17,11 @@ from scipy.linalg.lapack import dsytrf, dsytrs
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.compiling import njit
 from eulerplateau.film.elimination import Elimination
+from eulerplateau.film.front_kernels import factorise_fronts
 from eulerplateau.film.solve_kernels import solve_symmetric_rows
 
-# Columns of LAPACK's blocks.
-_COLUMNS = 32
+# Rows of fronts up to which compiled loops are faster than LAPACK; columns of its blocks.
+_COMPILED, _COLUMNS = 256, 32
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,9 @@ class IndefiniteFactor:
 
     def solve(self, rhs: FloatArray) -> FloatArray:
         """Return the solution (n, m) for right-hand sides (n, m)."""
-        return solve_symmetric_rows(*self._packed, self._order, rhs)
+        found = np.empty(rhs.shape)
+        solve_symmetric_rows(*self._packed, self._order, rhs, found)
+        return found
 
 
 def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> IndefiniteFactor:
@@ -42,28 +45,46 @@ def factorise_indefinite(elimination: Elimination, entries: FloatArray) -> Indef
     Raises LinAlgError if a pivot vanishes. The caller sees to it that BLAS has one thread.
     """
     # Factors and responses F_11^-1 F_12 at once where they are read: copies are as large.
-    sizes = ((front.stop - front.start) * front.size for _, front in elimination.filled)
-    data, filled = np.empty(sum(sizes)), 0
-    all_pivots: list[IntArray] = []
+    rows, size = elimination.room
+    pivots, data = np.empty(rows, dtype=np.int64), np.empty(size)
+    fill = _fill if elimination.largest <= _COMPILED else _fill_by_lapack
+    negative = fill(elimination, entries, pivots, data)
+    packed = (*elimination.hung, pivots, data)
+    return IndefiniteFactor(negative, elimination.order, packed)
+
+
+def _fill(
+    elimination: Elimination, entries: FloatArray, pivots: IntArray, data: FloatArray
+) -> int:
+    """Fill in pivots (n,) and data by compiled loops; return the negative eigenvalues."""
+    negative = factorise_fronts(entries, *elimination.packed, pivots, data)
+    if negative < 0:
+        raise LinAlgError("a pivot vanishes")
+    return negative
+
+
+def _fill_by_lapack(
+    elimination: Elimination, entries: FloatArray, pivots: IntArray, data: FloatArray
+) -> int:
+    """Fill in the same by LAPACK, which is faster with fronts that do not fit a cache."""
+    filled, negative = 0, 0
     remainders: dict[int, FloatArray] = {}
-    negative = 0
     for number, front in elimination.filled:
         own = front.stop - front.start
         block = front.assemble(entries, remainders)
-        factor, pivots, failed = dsytrf(block[:own, :own], lower=1, lwork=_COLUMNS * own)
+        factor, chosen, failed = dsytrf(block[:own, :own], lower=1, lwork=_COLUMNS * own)
         if failed:
             raise LinAlgError("a pivot vanishes")
-        negative += negative_pivots(factor, pivots)
+        pivots[front.start : front.stop] = chosen
+        negative += negative_pivots(factor, chosen)
         here = data[filled : (filled := filled + own * front.size)]
         here[: own * own] = factor.ravel("F")
         if own < front.size:
             below = block[own:, :own]
-            response = dsytrs(factor, pivots, below.T, lower=1)[0]
+            response = dsytrs(factor, chosen, below.T, lower=1)[0]
             remainders[number] = dgemm(-1.0, below, response, 1.0, block[own:, own:])
             here[own * own :] = response.ravel("F")
-        all_pivots.append(pivots)
-    packed = (*elimination.hung, np.concatenate(all_pivots), data)
-    return IndefiniteFactor(negative, elimination.order, packed)
+    return negative
 
 
 @njit(cache=True)

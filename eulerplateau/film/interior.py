@@ -211,7 +211,7 @@ class LocalFilm(ABC):
         Raises LinAlgError if there is none near the reference: it has torn or folded.
         """
         for its_loop, known in self._recent:
-            if np.array_equal(its_loop, x_loop):
+            if (its_loop == x_loop).all():
                 return known
         loop = self.tiling.loop
         base = self.x + self.follow(x_loop - self.x[loop])

@@ -84,8 +84,9 @@ def solve_rows(
     data: FloatArray,
     order: IntArray,
     rhs: FloatArray,
-) -> FloatArray:
-    """Return the same of right-hand sides (n, m) of the first n rows, as rows (n, m).
+    found: FloatArray,
+) -> None:
+    """Fill in the same of right-hand sides (n, m) of the first n rows, as rows (n, m).
 
     order : (N,), the place of each row in the factor
     """
@@ -95,11 +96,9 @@ def solve_rows(
         for c in range(m):
             columns[c, k] = rhs[order[k], c]
     solve_fronts(starts, stops, pointer, around, first, data, columns)
-    found = np.empty((n, m))
     for k in range(n):
         for c in range(m):
             found[order[k], c] = columns[c, k]
-    return found
 
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
@@ -151,19 +150,18 @@ def solve_symmetric_rows(
     data: FloatArray,
     order: IntArray,
     rhs: FloatArray,
-) -> FloatArray:
-    """Return the same of right-hand sides as rows (N, m), whose places are `order` (N,)."""
+    found: FloatArray,
+) -> None:
+    """Fill in the same of right-hand sides as rows (N, m), placed by `order` (N,)."""
     n, m = rhs.shape
     columns = np.empty((m, n))
     for k in range(n):
         for c in range(m):
             columns[c, k] = rhs[order[k], c]
     solve_symmetric_fronts(starts, pointer, around, pivots, data, columns)
-    found = np.empty((n, m))
     for k in range(n):
         for c in range(m):
             found[order[k], c] = columns[c, k]
-    return found
 
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})

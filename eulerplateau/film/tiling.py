@@ -22,6 +22,7 @@ from eulerplateau.arrays import BoolArray, FloatArray, IntArray
 from eulerplateau.film import area_kernels, hessian_kernels
 from eulerplateau.film.dissection import LARGEST, Graph, dissect
 from eulerplateau.film.elimination import Elimination, plan, summed
+from eulerplateau.film.strip import NoStrip
 from eulerplateau.mesh import neighbours
 
 
@@ -100,10 +101,8 @@ class Tiling:
     triangles: IntArray
     loop: IntArray
     interior: IntArray
-    # Where the entries of the film and its loop go, once that is known (normal_moves.py).
-    with_loop: list[tuple[IntArray, int, Elimination]] = field(
-        default_factory=list, init=False, repr=False, compare=False
-    )
+    # Where the entries of the film and its loop go, once that is known (with_loop.py).
+    with_loop: list[Elimination] = field(default_factory=list, init=False, repr=False)
 
     @property
     def n_v(self) -> int:
@@ -214,6 +213,11 @@ class Tiling:
     def pairs(self) -> tuple[IntArray, IntArray]:
         """The vertices of every entry (m,) of a matrix (n_v, n_v): its row, its column."""
         return self._scalar.indices, self._scalar.columns
+
+    @cached_property
+    def bare(self) -> NoStrip:
+        """The film with no strip of it following its loop."""
+        return NoStrip(self.loop, self.interior, self.pairs)
 
     @cached_property
     def neighbours(self) -> IntArray:

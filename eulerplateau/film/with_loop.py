@@ -15,11 +15,12 @@ import numpy as np
 from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.dissection import dissect, graph_of
 from eulerplateau.film.elimination import Elimination, plan
+from eulerplateau.film.strip import NoStrip
 
 _AXES = np.arange(3)
-# Nodes of a piece: LAPACK solves with an indefinite block more slowly than with another. Of
-# films of few nodes smaller ones are faster; of larger ones they are too many.
-_LARGEST, _SMALLER, _FEW = 48, 24, 512
+# Nodes of a piece: an indefinite block is factorised more slowly than another. Of films of
+# few nodes smaller ones are faster; of larger ones they are too many.
+_LARGEST, _SMALLER, _FEW = 48, 16, 512
 # Bending couples a vertex of the loop to the two on either side.
 _REACH = 2
 
@@ -35,7 +36,7 @@ class LoopStiffness:
     along : (n_b, 3) float
         What edge v's tension does to vertex v + 1; to vertex v it does the opposite.
     held : (3 n_b, m) float
-        Motions to which the solution is to be orthogonal.
+        Motions to which the solution is to be orthogonal; zero columns hold nothing.
     pinned : (k,) int, vertices to which springs are fixed before, and taken away after
         Without them the motions that are held would make the matrix singular.
     stiffness : float, of these springs, and the scale of `held`
@@ -59,8 +60,10 @@ class LoopStiffness:
         chain = np.repeat(self.chain, 3, axis=1)
         along = self.along.ravel()
         springs = np.full(3 * pinned, self.stiffness)
+        idle = np.where(held.any(axis=1), 0.0, self.stiffness)
         pairs = [chain[0], chain[1], chain[1], chain[2], chain[2], -along, -along, along]
-        return np.concatenate([*pairs, along, (self.stiffness * held).ravel(), springs])
+        motions = self.stiffness * held.ravel()
+        return np.concatenate([*pairs, along, motions, idle, springs])
 
     def places(self, first: int) -> tuple[IntArray, IntArray]:
         """Return rows and columns (k,) of the entries, of unknowns from `first` on."""
@@ -86,6 +89,7 @@ class LoopStiffness:
             (tension, after),
             (after, tension),
             (np.tile(at, held), np.repeat(motions, 3 * n)),
+            (motions, motions),
             (pinned, springs),
             (springs, springs),
             (pinned, pinned),
@@ -100,44 +104,43 @@ class FilmWithLoop:
 
     Attributes
     ----------
-    n_i, n_b : vertices inside and on the loop
-    row, column : (m,) int, of the film's entries
-    known : what has been found, by the vertices that are pinned and the number held
+    strip : which vertices of the film follow its loop
+    known : the elimination, once it has been found
     """
 
-    n_i: int
-    n_b: int
-    row: IntArray
-    column: IntArray
-    known: list[tuple[IntArray, int, Elimination]]
+    strip: NoStrip
+    known: list[Elimination]
 
     def assemble(
         self, film: FloatArray, loop: LoopStiffness
     ) -> tuple[Elimination, FloatArray]:
         """Return the matrix of a film's entries (m,) and its loop's, to be factorised."""
-        return self._elimination(loop), np.concatenate([film, loop.entries])
+        if not self.known:
+            self.known.append(self._elimination(loop))
+        return self.known[0], np.concatenate([film, loop.entries])
 
     def _elimination(self, loop: LoopStiffness) -> Elimination:
-        """Return it, made once as long as the same vertices are pinned and as much held."""
-        for pinned, n_held, found in self.known:
-            if n_held == loop.n_held and np.array_equal(pinned, loop.pinned):
-                return found
-        pieces, (row, column) = self._pieces(), loop.places(self.n_i)
-        first = self.n_i + 4 * self.n_b
-        kept = np.arange(first, first + loop.n_held)
-        whole = np.concatenate([self.row, row]), np.concatenate([self.column, column])
-        found = plan(*whole, pieces, kept)
-        self.known[:] = [(loop.pinned, loop.n_held, found)]
-        return found
+        """Return it: the same whatever is held, since as many vertices are pinned."""
+        up, (inside, on_loop), kept = self.strip.places
+        first, second = loop.places(len(self.strip.interior))
+        row = np.concatenate([up[0], inside, on_loop, kept[0], first])
+        column = np.concatenate([up[1], on_loop, inside, kept[1], second])
+        n = len(self.strip.interior) + 4 * len(self.strip.loop)
+        film = len(row) - len(first)
+        pieces = self._pieces(row[:film], column[:film])
+        return plan(row, column, pieces, np.arange(n, n + loop.n_held))
 
-    def _pieces(self) -> list[IntArray]:
-        """Return the unknowns, but for those that hold the loop, in pieces."""
-        n_i, n_b = self.n_i, self.n_b
+    def _pieces(self, row: IntArray, column: IntArray) -> list[IntArray]:
+        """Return the unknowns, but for those that hold the loop, in pieces.
+
+        row, column : of the film's entries
+        """
+        n_i, n_b = len(self.strip.interior), len(self.strip.loop)
         # A node for each height, and one for each vertex of the loop.
         loop = n_i + np.arange(n_b)
-        reach = [np.roll(loop, -step) for step in range(1, _REACH + 1)]
-        row = np.concatenate([self._node(self.row), *(_REACH * [loop]), *reach])
-        column = np.concatenate([self._node(self.column), *reach, *(_REACH * [loop])])
+        reach = [n_i + np.arange(step, n_b + step) % n_b for step in range(1, _REACH + 1)]
+        row = np.concatenate([self._node(row), *(_REACH * [loop]), *reach])
+        column = np.concatenate([self._node(column), *reach, *(_REACH * [loop])])
         graph = graph_of(row, column, n_i + n_b)
         largest = _SMALLER if n_i + n_b <= _FEW else _LARGEST
         pieces = dissect(graph, loop, np.arange(n_i + n_b), largest)
@@ -152,4 +155,5 @@ class FilmWithLoop:
         return list(np.split(order, cuts))
 
     def _node(self, unknown: IntArray) -> IntArray:
-        return np.where(unknown < self.n_i, unknown, self.n_i + (unknown - self.n_i) // 3)
+        n_i = len(self.strip.interior)
+        return np.where(unknown < n_i, unknown, n_i + (unknown - n_i) // 3)

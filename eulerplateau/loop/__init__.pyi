@@ -15,6 +15,7 @@ from .lengths import (
     Unconstrained as Unconstrained,
     close_with_lengths as close_with_lengths,
     project_lengths as project_lengths,
+    quickly_projected as quickly_projected,
 )
 from .line_tension import LineTension as LineTension
 from .loop import (

@@ -38,25 +38,7 @@ def jacobian(loop: Loop, x_loop: FloatArray) -> FloatArray:
     return rows.reshape(n, d * n)
 
 
-def _solved(metric: LengthMetric, excess: FloatArray) -> FloatArray:
-    return metric.solve(excess)
-
-
-def _quickly_solved(metric: LengthMetric, excess: FloatArray) -> FloatArray:
-    """Return the same by compiled loops."""
-    from eulerplateau.loop.slide_kernels import solve_lengths  # not for springs
-
-    found = excess.copy()
-    if not solve_lengths(metric.directions, metric.means, found):
-        raise LinAlgError("an edge of the loop has no length, or the loop no width")
-    return found
-
-
-def project_lengths(
-    loop: Loop,
-    x_loop: FloatArray,
-    solved: Callable[[LengthMetric, FloatArray], FloatArray] = _solved,
-) -> FloatArray | None:
+def project_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
     """Return the nearest loop (n_b, d) that keeps its lengths, to rounding; None if lost.
 
     Gauss-Newton in the norm sum_v <s_v> |dx_v|^2. Next to a much longer edge, what corrects
@@ -66,10 +48,7 @@ def project_lengths(
     if is_uneven(loop):
         return _turn_edges(loop, x_loop)
     mass = loop.mean_lengths[:, None]
-    # What rounding of the positions leaves of a short edge's length.
-    rounding = 4 * _EPS * float(np.abs(x_loop).max() / loop.rest_lengths.min())
-    small = max(1e-12, rounding)
-    x, error, s = x_loop, np.inf, loop.rest_lengths
+    x, error, s, small = x_loop, np.inf, loop.rest_lengths, _rounded(loop, x_loop)
     for _ in range(_PROJECTION_STEPS):
         chords = loop.chords(x)
         excess = loop.excess(np.sqrt(np.vecdot(chords, chords)))
@@ -81,11 +60,29 @@ def project_lengths(
             return x
         metric = LengthMetric(chords / s[:, None], loop.mean_lengths)
         try:
-            pull = solved(metric, excess)
+            pull = metric.solve(excess)
         except LinAlgError:
             return None
         x = x - metric.force(pull) / mass
     return x if error < small else None
+
+
+def quickly_projected(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+    """Return the same by compiled loops, of a loop whose film needs them anyway."""
+    if is_uneven(loop):
+        return _turn_edges(loop, x_loop)
+    from eulerplateau.loop.slide_kernels import give_lengths  # not for springs
+
+    x, small = x_loop.copy(), _rounded(loop, x_loop)
+    kept = give_lengths(x, loop.rest_lengths, loop.mean_lengths, small, _PROJECTION_STEPS)
+    return x if kept else None
+
+
+def _rounded(loop: Loop, x_loop: FloatArray) -> float:
+    """Return the relative error of lengths from which on it is rounding's."""
+    # What rounding of the positions leaves of a short edge's length.
+    rounding = 4 * _EPS * float(np.abs(x_loop).max() / loop.rest_lengths.min())
+    return max(1e-12, rounding)
 
 
 def is_uneven(loop: Loop) -> bool:
@@ -129,15 +126,19 @@ def _turn_edges(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
     return None
 
 
-def close_with_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
+def close_with_lengths(
+    loop: Loop,
+    x_loop: FloatArray,
+    projected: Callable[[Loop, FloatArray], FloatArray | None] = project_lengths,
+) -> FloatArray | None:
     """Return a loop that keeps its lengths, from any start, however wrong its lengths.
 
     Alternates between giving each edge its length and spreading what the loop then fails
-    to close by; ends with `project_lengths`.
+    to close by; ends with what is `projected`.
     """
     s = loop.rest_lengths
     if loop.length_error(x_loop) < 0.1:
-        near = project_lengths(loop, x_loop)
+        near = projected(loop, x_loop)
         if near is not None:
             return near
     x = x_loop
@@ -151,7 +152,7 @@ def close_with_lengths(loop: Loop, x_loop: FloatArray) -> FloatArray | None:
         x = x[0] + np.concatenate([np.zeros_like(edges[:1]), np.cumsum(edges, axis=0)[:-1]])
         if loop.length_error(x) < 1e-3:
             break
-    return project_lengths(loop, x - x.mean(axis=0) + x_loop.mean(axis=0))
+    return projected(loop, x - x.mean(axis=0) + x_loop.mean(axis=0))
 
 
 @dataclass(frozen=True)
@@ -195,7 +196,7 @@ class FilmLengths(Lengths):
 
     def project(self, x: FloatArray) -> FloatArray | None:
         """Return the nearest loop that keeps its lengths."""
-        return project_lengths(self.loop, x, _quickly_solved)
+        return quickly_projected(self.loop, x)
 
 
 class Unconstrained:

@@ -1,8 +1,7 @@
 """Which motions of a loop keep its edges' lengths, and which of them slide it along itself.
 
-Compiled loops, arrays in, arrays out. `solve_lengths` and `keep_lengths` serve loops in
-space and in a plane; the others plane loops whose unknowns are the angles theta_v of their
-edges (solvers/in_plane/kernels.py). Helpers stay in this file (numba #1833).
+Compiled loops, arrays in, arrays out, for loops in space and in a plane. Helpers stay in
+this file (numba #1833).
 """
 
 from __future__ import annotations
@@ -27,16 +26,9 @@ def solve_lengths(directions: FloatArray, means: FloatArray, rhs: FloatArray) ->
     rank-one term w w^T takes out, w (n,) having two entries: what remains is positive
     semidefinite, is factorised without pivoting, and Sherman and Morrison put w back.
     """
-    n, solid = len(rhs), directions.shape[1] == 3
-    corner = (
-        directions[n - 1, 0] * directions[0, 0] + directions[n - 1, 1] * directions[0, 1]
-    )
-    first = directions[0, 0] ** 2 + directions[0, 1] ** 2
-    last = directions[n - 1, 0] ** 2 + directions[n - 1, 1] ** 2
-    if solid:
-        corner += directions[n - 1, 2] * directions[0, 2]
-        first += directions[0, 2] ** 2
-        last += directions[n - 1, 2] ** 2
+    n = len(rhs)
+    corner = dot(directions, n - 1, 0)
+    first, last = dot(directions, 0, 0), dot(directions, n - 1, n - 1)
     even, root = (first / last) ** 0.25, np.sqrt(abs(corner) / means[0])
     start, end = root * even, np.copysign(root / even, -corner)
     inverse, ratios, border = np.empty(n), np.empty(n), np.empty(n)
@@ -44,16 +36,10 @@ def solve_lengths(directions: FloatArray, means: FloatArray, rhs: FloatArray) ->
     ahead = 1.0 / means[0]
     for v in range(n):
         ease, ahead = ahead, 1.0 / means[v + 1 if v < n - 1 else 0]
-        square = directions[v, 0] ** 2 + directions[v, 1] ** 2
-        if solid:
-            square += directions[v, 2] ** 2
-        diagonal, beside, entry = square * (ease + ahead), 0.0, 0.0
+        diagonal = dot(directions, v, v) * (ease + ahead)
+        beside, entry = 0.0, 0.0
         if v > 0:
-            beside -= directions[v - 1, 0] * directions[v, 0]
-            beside -= directions[v - 1, 1] * directions[v, 1]
-            if solid:
-                beside -= directions[v - 1, 2] * directions[v, 2]
-            beside *= ease
+            beside = -ease * dot(directions, v - 1, v)
         else:
             diagonal, entry = diagonal - start * start, start
         if v == n - 1:
@@ -80,6 +66,59 @@ def solve_lengths(directions: FloatArray, means: FloatArray, rhs: FloatArray) ->
 
 
 @njit(cache=True, error_model="numpy")
+def dot(rows: FloatArray, i: int, j: int) -> float:
+    """Return the product of two of the rows (n, d), d = 2 or 3."""
+    total: float = rows[i, 0] * rows[j, 0] + rows[i, 1] * rows[j, 1]
+    if rows.shape[1] == 3:
+        total += rows[i, 2] * rows[j, 2]
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def give_lengths(
+    x: FloatArray, lengths: FloatArray, means: FloatArray, small: float, steps: int
+) -> bool:
+    """Move x (n, d) to the nearest loop whose edges are so long; return whether there is.
+
+    By Gauss and Newton, as lengths.project_lengths does; `small`: of what rounding leaves.
+    """
+    n, dimension = x.shape
+    directions, pull, error = np.empty((n, dimension)), np.empty(n), np.inf
+    for _ in range(steps):
+        before, error, total = error, 0.0, 0.0
+        for v in range(n):
+            for d in range(dimension):
+                directions[v, d] = (x[v + 1 if v < n - 1 else 0, d] - x[v, d]) / lengths[v]
+            length = np.sqrt(dot(directions, v, v))
+            pull[v] = 0.5 * (length - 1.0) * (length + 1.0) * lengths[v]
+            part = abs(pull[v]) / lengths[v]
+            error, total = max(error, part), total + part
+        if not total < np.inf or error > 1e3:
+            return False
+        # Quadratic convergence ends where rounding begins: then error stops falling.
+        if error < 1e-15 or (error < small and error >= 0.25 * before):
+            return True
+        if not solve_lengths(directions, means, pull):
+            return False
+        draw(directions, means, pull, x)
+    return error < small
+
+
+@njit(cache=True, error_model="numpy")
+def draw(
+    directions: FloatArray, means: FloatArray, pull: FloatArray, field: FloatArray
+) -> None:
+    """Take M^-1 J^T pull, of pulls (n,), from a field (n, d)."""
+    n = len(field)
+    for d in range(field.shape[1]):
+        before = pull[n - 1] * directions[n - 1, d]
+        for v in range(n):
+            here = pull[v] * directions[v, d]
+            field[v, d] += (here - before) / means[v]
+            before = here
+
+
+@njit(cache=True, error_model="numpy")
 def keep_lengths(directions: FloatArray, means: FloatArray, field: FloatArray) -> bool:
     """Replace field (n, d) by the nearest motion p that keeps all lengths: J p = 0.
 
@@ -92,12 +131,7 @@ def keep_lengths(directions: FloatArray, means: FloatArray, field: FloatArray) -
             pull[v] += directions[v, d] * (field[v + 1, d] - field[v, d])
         pull[n - 1] += directions[n - 1, d] * (field[0, d] - field[n - 1, d])
     definite = solve_lengths(directions, means, pull)
-    for d in range(dimension):
-        before = pull[n - 1] * directions[n - 1, d]
-        for v in range(n):
-            here = pull[v] * directions[v, d]
-            field[v, d] += (here - before) / means[v]
-            before = here
+    draw(directions, means, pull, field)
     return definite
 
 
@@ -198,98 +232,3 @@ def balance(
             for c in range(d):
                 left[v, c] -= share * means[v] * motions[k, v, c]
     return largest
-
-
-@njit(cache=True, error_model="numpy")
-def work_of(
-    units: FloatArray, lengths: FloatArray, forces: FloatArray, row: FloatArray
-) -> None:
-    """Fill row (n,) with the work per d theta_v of forces (n, 2) that sum to zero."""
-    x, y = 0.0, 0.0
-    for v in range(len(lengths) - 1, -1, -1):
-        row[v] = lengths[v] * (units[v, 0] * y - units[v, 1] * x)
-        x += forces[v, 0]
-        y += forces[v, 1]
-
-
-@njit(cache=True, error_model="numpy")
-def remove_rigid(points: FloatArray, means: FloatArray, field: FloatArray) -> float:
-    """Take rigid motions out of a field (n, 2); return what is left of it squared.
-
-    Both in the norm sum_v <s_v> |p_v|^2; points (n or more, 2) are the vertices.
-    """
-    n = len(field)
-    mass, inertia, spin, left = 0.0, 0.0, 0.0, 0.0
-    x, y, u, w = 0.0, 0.0, 0.0, 0.0
-    for v in range(n):
-        mass += means[v]
-        x += means[v] * points[v, 0]
-        y += means[v] * points[v, 1]
-        u += means[v] * field[v, 0]
-        w += means[v] * field[v, 1]
-    x, y, u, w = x / mass, y / mass, u / mass, w / mass
-    for v in range(n):
-        a, b = points[v, 0] - x, points[v, 1] - y
-        spin += means[v] * (a * (field[v, 1] - w) - b * (field[v, 0] - u))
-        inertia += means[v] * (a * a + b * b)
-    spin /= inertia
-    for v in range(n):
-        field[v, 0] -= u - spin * (points[v, 1] - y)
-        field[v, 1] -= w + spin * (points[v, 0] - x)
-        left += means[v] * (field[v, 0] ** 2 + field[v, 1] ** 2)
-    return left
-
-
-@njit(cache=True, error_model="numpy")
-def slide_row(
-    units: FloatArray,
-    points: FloatArray,
-    means: FloatArray,
-    lengths: FloatArray,
-    row: FloatArray,
-) -> None:
-    """Fill row (n,) with the part of d theta_v in the loop's sliding along itself.
-
-    row . d theta = sum_v <s_v> slide_v . d x_v with motions.sliding; zero for a circle.
-    """
-    n = len(lengths)
-    slide = np.empty((n, 2))
-    for v in range(n):
-        for d in range(2):
-            slide[v, d] = units[v, d] + units[v - 1, d]
-    keep_lengths(units, means, slide)
-    whole = 0.0
-    for v in range(n):
-        whole += means[v] * (slide[v, 0] ** 2 + slide[v, 1] ** 2)
-    left = remove_rigid(points, means, slide)
-    scale = 1.0 / np.sqrt(left) if left >= SLIDES**2 * whole else 0.0
-    for v in range(n):
-        for d in range(2):
-            slide[v, d] *= means[v] * scale
-    work_of(units, lengths, slide, row)
-
-
-@njit(cache=True, error_model="numpy")
-def mass_row(
-    units: FloatArray,
-    points: FloatArray,
-    means: FloatArray,
-    lengths: FloatArray,
-    turns: FloatArray,
-    row: FloatArray,
-) -> float:
-    """Fill row (n,) with M d theta of turns (n,); return d theta . M d theta.
-
-    M is the norm integral |p|^2 ds of the displacement, rigid motions taken out.
-    """
-    n = len(lengths)
-    field = np.zeros((n, 2))
-    for v in range(1, n):
-        field[v, 0] = field[v - 1, 0] - lengths[v - 1] * units[v - 1, 1] * turns[v - 1]
-        field[v, 1] = field[v - 1, 1] + lengths[v - 1] * units[v - 1, 0] * turns[v - 1]
-    size = remove_rigid(points, means, field)
-    for v in range(n):
-        for d in range(2):
-            field[v, d] *= means[v]
-    work_of(units, lengths, field, row)
-    return size

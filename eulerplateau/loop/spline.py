@@ -42,6 +42,8 @@ def _hermite(t: FloatArray, order: int) -> FloatArray:
 _T, _WEIGHTS = np.polynomial.legendre.leggauss(_POINTS)
 _T, _WEIGHTS = 0.5 * (_T + 1), 0.5 * _WEIGHTS
 _VALUE, _FIRST, _SECOND = (_hermite(_T, order) for order in range(3))
+# By this (6, 6) data make up the gradient of the integral of |r''|^2 ds on a unit edge.
+_BENDING = 2 * (_SECOND.T @ (_WEIGHTS[:, None] * _SECOND))
 # By this, C (6, 6), data d make up the integral of r x r' ds: it is the sum of d x C d.
 _AHEAD = 0.5 * (_VALUE.T @ (_WEIGHTS[:, None] * _FIRST))
 _AHEAD -= _AHEAD.T.copy()
@@ -62,35 +64,37 @@ class Splines:
 
     def through(self, x: FloatArray) -> SplineLoop:
         """Return the spline through a loop's vertices (n, 3)."""
-        data = np.empty((len(x), 6, 3))
-        derivatives = self._solved(np.matmul(self._knots, x[self._around]))
-        at_vertices = np.concatenate([x[:, None], derivatives], axis=1)
-        np.multiply(at_vertices, self._powers, out=data[:, :3])
-        np.multiply(at_vertices[self._around[:, 2]], self._powers, out=data[:, 3:])
+        data, (_, order, place) = np.empty((6, *x.shape)), self._equations
+        jumps = np.matmul(self._knots, x[self._around[order]])
+        data[0] = x
+        data[1:3] = self._solved(jumps)[place].swapaxes(0, 1)
+        np.multiply(data[:3, self._around[:, 2]], self._powers, out=data[3:])
+        data[:3] *= self._powers
         return SplineLoop(self, data)
 
     def pulled_back(self, by_data: FloatArray) -> FloatArray:
-        """Return a gradient by the vertices (n, 3), given by Hermite's data (n, 6, 3)."""
-        before, _, after = self._around.T
-        at_vertices = self._powers * by_data[:, :3]
-        at_vertices += (self._powers * by_data[:, 3:])[before]
-        derivatives = self._solved(at_vertices[:, 1:], adjoint=True)
-        by_knots = np.matmul(self._knots.swapaxes(1, 2), derivatives)
-        found: FloatArray = at_vertices[:, 0]
+        """Return a gradient by the vertices (n, 3), given by Hermite's data (6, n, 3)."""
+        (_, order, place), (before, _, after) = self._equations, self._around.T
+        at_vertices = self._powers * by_data[:3]
+        at_vertices += (self._powers * by_data[3:])[:, before]
+        jumps = self._solved(at_vertices[1:, order].swapaxes(0, 1), adjoint=True)
+        by_knots = np.matmul(self._knots.swapaxes(1, 2), jumps)[place]
+        found: FloatArray = at_vertices[0]
         found += by_knots[:, 1] + by_knots[after, 0] + by_knots[before, 2]
         return found
 
     @cached_property
     def _powers(self) -> FloatArray:
-        """1, h and h^2 (n, 3, 1) of each edge."""
-        h: FloatArray = self.lengths[:, None] ** np.arange(3)
+        """1, h and h^2 (3, n, 1) of each edge."""
+        h: FloatArray = self.lengths ** np.arange(3)[:, None]
         return h[:, :, None]
 
     @cached_property
     def _around(self) -> IntArray:
         """The vertex (n, 3) before each, itself, and the one after it."""
-        at = np.arange(len(self.lengths))
-        return np.stack([np.roll(at, 1), at, np.roll(at, -1)], axis=1)
+        n = len(self.lengths)
+        around: IntArray = (np.arange(n)[:, None] + np.array([-1, 0, 1])) % n
+        return around
 
     @cached_property
     def _jumps(self) -> FloatArray:
@@ -111,21 +115,23 @@ class Splines:
 
     @cached_property
     def _knots(self) -> FloatArray:
-        """What the vertices' positions contribute to the equations (n, 2, 3)."""
-        return np.ascontiguousarray(-self._jumps[..., 0])
+        """What the positions contribute to the equations (n, 2, 3), in their order."""
+        return np.ascontiguousarray(-self._jumps[self._equations[1], ..., 0])
 
     def _solved(self, rhs: FloatArray, adjoint: bool = False) -> FloatArray:
-        """Return the derivatives (n, 2, 3) that solve their equations, or the adjoint."""
-        factor, pivots, order = self._factor
-        ordered = rhs[order].reshape(2 * len(order), -1)
-        solved, _ = dgbtrs(factor, _BAND, _BAND, ordered, pivots, trans=int(adjoint))
-        found = np.empty_like(rhs)
-        found[order] = solved.reshape(rhs.shape)
+        """Return the derivatives (n, 2, 3) that solve their equations, or the adjoint.
+
+        Both in the order of the equations.
+        """
+        (factor, pivots), _, _ = self._equations
+        rows = rhs.reshape(2 * len(rhs), -1)
+        solved, _ = dgbtrs(factor, _BAND, _BAND, rows, pivots, trans=int(adjoint))
+        found: FloatArray = solved.reshape(rhs.shape)
         return found
 
     @cached_property
-    def _factor(self) -> tuple[FloatArray, IntArray, IntArray]:
-        """The equations of x' and x'' at the vertices, factorised, and their order.
+    def _equations(self) -> tuple[tuple[FloatArray, IntArray], IntArray, IntArray]:
+        """The equations of x' and x'' at the vertices, factorised; their order and places.
 
         In the order 0, n - 1, 1, n - 2, ... neighbours are two places apart at most, round
         the whole loop: the matrix is banded.
@@ -147,12 +153,12 @@ class Splines:
         factor, pivots, failed = dgbtrf(matrix, _BAND, _BAND)
         if failed:
             raise LinAlgError("the loop has edges without length")
-        return factor, pivots, order
+        return (factor, pivots), order, place
 
 
 @dataclass(frozen=True)
 class SplineLoop:
-    """One of them, r(s), by Hermite's data (n, 6, 3) on its edges.
+    """One of them, r(s), by Hermite's data (6, n, 3) on its edges.
 
     Gradients are by these data; Splines.pulled_back makes them such by the vertices.
     """
@@ -163,7 +169,8 @@ class SplineLoop:
     @property
     def vertices(self) -> FloatArray:
         """The vertices (n, 3) it passes through."""
-        return self.data[:, 0]
+        vertices: FloatArray = self.data[0]
+        return vertices
 
     @property
     def bending(self) -> float:
@@ -173,25 +180,24 @@ class SplineLoop:
     @cached_property
     def bending_gradient(self) -> FloatArray:
         """Its gradient."""
-        weights = 2 * _WEIGHTS / self.splines.lengths[:, None] ** 3
-        return _adjoint(_SECOND, weights[:, :, None] * _along(_SECOND, self.data))
+        return _along(_BENDING, self.data) / self.splines.lengths[:, None] ** 3
 
     @cached_property
     def speeds(self) -> FloatArray:
-        """|r'| at each edge's Gauss points (n, 4): 1 where s is the arc length."""
-        speeds: FloatArray = np.sqrt(np.square(self._first).sum(axis=2))
-        return speeds / self.splines.lengths[:, None]
+        """|r'| at each edge's Gauss points (4, n): 1 where s is the arc length."""
+        speeds: FloatArray = np.sqrt(np.vecdot(self._first, self._first))
+        return speeds / self.splines.lengths
 
     @cached_property
     def excess(self) -> FloatArray:
         """By how much each edge's arc (n,) is longer than at rest."""
-        excess: FloatArray = self.splines.lengths * ((self.speeds - 1) @ _WEIGHTS)
+        excess: FloatArray = self.splines.lengths * (_WEIGHTS @ (self.speeds - 1))
         return excess
 
     def tension_gradient(self, tensions: FloatArray) -> FloatArray:
         """Return the gradient of sum_v lambda_v excess_v for tensions lambda (n,)."""
-        pull = (tensions / self.splines.lengths)[:, None] * _WEIGHTS / self.speeds
-        return _adjoint(_FIRST, pull[:, :, None] * self._first)
+        pull = _WEIGHTS[:, None] * (tensions / self.splines.lengths) / self.speeds
+        return _along(_FIRST.T, pull[:, :, None] * self._first)
 
     @cached_property
     def spanned(self) -> FloatArray:
@@ -207,22 +213,23 @@ class SplineLoop:
         """
         x, y, z = normal.tolist()
         turn = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        gradient: FloatArray = np.matmul(self._ahead, turn)
-        return gradient
+        gradient: FloatArray = self._ahead.reshape(-1, 3) @ turn
+        return gradient.reshape(self.data.shape)
 
     @cached_property
     def _ahead(self) -> FloatArray:
-        """The data times C (n, 6, 3)."""
+        """The data times C (6, n, 3)."""
         return _along(_AHEAD, self.data)
 
     @property
     def middles(self) -> FloatArray:
         """The middles of the edges (n, 3)."""
-        return _along(_MIDDLE, self.data)[:, 0]
+        middles: FloatArray = _along(_MIDDLE, self.data)[0]
+        return middles
 
     def middles_gradient(self, forces: FloatArray) -> FloatArray:
         """Return the gradient of what forces (n, 3) do on the middles."""
-        return _adjoint(_MIDDLE, forces[:, None])
+        return _along(_MIDDLE.T, forces[None])
 
     @cached_property
     def _first(self) -> FloatArray:
@@ -230,11 +237,9 @@ class SplineLoop:
 
 
 def _along(basis: FloatArray, data: FloatArray) -> FloatArray:
-    """Return sums (n, m, 3) of data (n, 6, 3) with the rows of a basis (m, 6)."""
-    found: FloatArray = np.matmul(basis, data)
-    return found
+    """Return sums (m, n, 3) of data (6, n, 3) with the rows of a basis (m, 6).
 
-
-def _adjoint(basis: FloatArray, forces: FloatArray) -> FloatArray:
-    """Return the gradient by data (n, 6, 3) of what forces (n, m, 3) do on such sums."""
-    return _along(basis.T, forces)
+    By the transpose: the gradient by data of what forces (m, n, 3) do on such sums.
+    """
+    found: FloatArray = basis @ data.reshape(len(data), -1)
+    return found.reshape(-1, *data.shape[1:])

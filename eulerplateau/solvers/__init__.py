@@ -10,7 +10,8 @@
                   models.py, quadratic_models.py: of which part, large_loops/ for large ones
     correction.py  an equilibrium to a higher order than its mesh's
     conjugate_gradient.py  the paper's method, by augmented_lagrangian.py, in the unknowns
-                  of trial_space.py and variables.py; plain_gradient.py: as the paper has it
+                  of trial_space.py and variables.py; plain_gradient.py: the paper's;
+                  saddles.py: whether what it comes to is one
 
 A solver sees an energy of loops with its constraint, no mesh and no file. Which film it
 is is asked in newton.py and in trial_space.py, nowhere else.

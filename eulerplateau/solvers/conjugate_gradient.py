@@ -9,7 +9,8 @@ A saddle balances its forces too: a result is accepted only if a small kick and 
 solve come back to the same energy. A film that turns against its mesh leaves a saddle
 slowly, and the second solve has to look closer. Where turning costs nothing that could be
 measured it would walk on for ever: what it has not gained in a few hundred iterations is
-not there to be gained.
+not there to be gained. Of a kick there is left what comes back most slowly: along that the
+energy may still fall, too slowly to be noticed. There the next kick goes.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from eulerplateau.mesh import Shape
 from eulerplateau.solvers.augmented_lagrangian import Method, descend
 from eulerplateau.solvers.equilibrium import RESIDUAL_TOLERANCE, Equilibrium, Status
 from eulerplateau.solvers.problem import Problem
+from eulerplateau.solvers.saddles import way_down
 from eulerplateau.solvers.start import smooth_kick
 from eulerplateau.solvers.trial_space import kick_axis
 from eulerplateau.solvers.variables import conditioned
@@ -84,16 +86,24 @@ def search(
     confirmed = False
     rng = np.random.default_rng(0)
     axis = kick_axis(problem.film)
+    down: Shape | None = None
     for _ in range(_KICKS):
         if not best.converged:
             break
-        shape = best.shape
-        kicked = shape.moved(shape.x + smooth_kick(shape.x_loop, shape.x, rng, axis))
+        shape, known = best.shape, down is not None
+        kick = smooth_kick(shape.x_loop, shape.x, rng, axis)
+        kicked = shape.moved(shape.x + kick) if down is None else down
         left, aim = min(limit - spent, method.kicked_limit), method.kicked_residual
         again = descend(problem, kicked, best.tensions, load, left, observe, method, aim)
         spent += again.iterations
         gained = _without_excess(problem, best) - _without_excess(problem, again)
         confirmed = abs(gained) <= _SAME_ENERGY * abs(best.energy)
+        # Once: where nothing is gained down there either it is the same state.
+        ask = confirmed and not known
+        down = way_down(problem, best, again, load) if ask else None
+        if down is not None:
+            confirmed = False
+            continue
         if confirmed and not again.converged:
             break
         if not again.converged:
@@ -105,8 +115,8 @@ def search(
         if confirmed:
             best = min(best, again, key=lambda found: found.length_error)
             break
-        lower = _without_excess(problem, again) < _without_excess(problem, best)
-        best = again if lower or not again.converged else best
+        gained = _without_excess(problem, best) - _without_excess(problem, again)
+        best = again if gained > 0 or not again.converged else best
     if best.converged and not confirmed:
         best = replace(best, status=Status.SADDLE)
     seconds = time.perf_counter() - started

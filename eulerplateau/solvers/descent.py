@@ -62,9 +62,12 @@ class Descent:
         """The energy."""
         return self.models.energy
 
-    def run(self, x: FloatArray) -> tuple[State, Status]:
-        """Descend from a loop (n, d) that keeps its constraint while the energy holds."""
-        state = State(self.models.at(x), FIRST_RADIUS, 0)
+    def run(self, x: FloatArray, near: Model | None = None) -> tuple[State, Status]:
+        """Descend from a loop (n, d) that keeps its constraint while the energy holds.
+
+        near : a model of a loop near by, and nearly of the same energy
+        """
+        state = State(self.models.at(x, near), FIRST_RADIUS, 0)
         close = _CLOSE
         while state.iteration < self.max_iterations:
             heed()

@@ -8,13 +8,13 @@ from typing import cast
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import AreaOfLoop, FilmOfLoop
-from eulerplateau.loop import close_with_lengths, largest_turning
+from eulerplateau.loop import close_with_lengths, largest_turning, quickly_projected
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent, State
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.large_loops.coarse_start import smoothed
 from eulerplateau.solvers.large_loops.film_models import FilmModels
-from eulerplateau.solvers.models import DenseModels, Models
+from eulerplateau.solvers.models import DenseModels, Model, Models
 from eulerplateau.solvers.problem import Problem
 from eulerplateau.solvers.quadratic_models import DENSE_LOOP, quadratic_models
 from eulerplateau.solvers.renewal import Reached, elsewhere, near_shapes
@@ -41,7 +41,9 @@ def search(
     """
     large = len(start.loop) > DENSE_LOOP
     smooth = smoothed(problem.loop, start.x_loop, _SMOOTH) if large else None
-    x_loop = close_with_lengths(problem.loop, start.x_loop) if smooth is None else smooth
+    x_loop = smooth
+    if x_loop is None:
+        x_loop = close_with_lengths(problem.loop, start.x_loop, quickly_projected)
     if x_loop is None:
         return None
     if smooth is not None and (tied := problem.tied_film()) is not None:
@@ -79,13 +81,14 @@ def _near(
     observe: Callable[[FloatArray], None],
 ) -> Equilibrium | None:
     """Return what a soap film near a shape, on a loop, comes to; None if there is none."""
+    model: Model | None = None
 
     def descend(film: FilmOfLoop, left: int) -> Reached:
-        nonlocal x_loop
+        nonlocal x_loop, model
         models = _models(problem, film, load)
         descent = Descent(models, left, observe, partial(elsewhere, film))
-        state, status = descent.run(x_loop)
-        x_loop = state.model.x
+        state, status = descent.run(x_loop, model)
+        x_loop, model = state.model.x, state.model
         return Reached(
             x=x_loop,
             iterations=state.iteration,

@@ -9,7 +9,8 @@ from eulerplateau.errors import SpecError
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.mesh import Disk, Shape
 
-_SIZE = 1e-3
+# How far a kick moves a vertex at most, in L.
+KICK = 1e-3
 
 
 def smooth_kick(
@@ -27,7 +28,7 @@ def smooth_kick(
     a, b = ((x - centre) @ axes[:2].T / np.abs(x_loop - centre).max()).T
     powers = [(i, d - i) for d in (2, 3, 4) for i in range(d + 1)]
     height = sum(rng.standard_normal() * a**i * b**j for i, j in powers)
-    return np.outer(height * (_SIZE / np.abs(height).max()), axes[axis])
+    return np.outer(height * (KICK / np.abs(height).max()), axes[axis])
 
 
 def displaced(mesh: Disk, displacement: float, seed: int) -> FloatArray:

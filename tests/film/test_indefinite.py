@@ -45,9 +45,14 @@ def entries(tiling: Tiling, shift: float, n: int) -> tuple[FloatArray, FloatArra
 
 
 @pytest.mark.parametrize("shift", [-3.0, 0.0, 3.0])
+@pytest.mark.parametrize("compiled", [0, 256], ids=["lapack", "compiled"])
 def test_indefinite_matrix_is_solved_with_and_its_negative_eigenvalues_are_counted(
-    fronts: tuple[Tiling, Elimination], shift: float
+    fronts: tuple[Tiling, Elimination],
+    shift: float,
+    compiled: int,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr("eulerplateau.film.indefinite._COMPILED", compiled)
     tiling, elimination = fronts
     n = len(elimination.order)
     matrix, values = entries(tiling, shift, n)

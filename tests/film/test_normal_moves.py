@@ -48,7 +48,7 @@ def whole(local: LocalFilm, x: FloatArray) -> FloatArray:
     n_b, inside = len(film.loop), film.interior
     columns = np.zeros((film.n_v, 3, 3 * n_b + len(inside)))
     for d in range(3):
-        columns[np.arange(film.n_v), d, 3 * varied.leader + d] = varied.weight
+        columns[np.arange(film.n_v), d, 3 * varied.strip.leader + d] = varied.strip.weight
     columns[inside, :, 3 * n_b + np.arange(len(inside))] = local.normals
     flat = columns.reshape(3 * film.n_v, -1)
     found: FloatArray = flat.T @ (soap_films.hessian(film, x) @ flat)
@@ -137,7 +137,7 @@ def test_strip_that_follows_the_loop_ends_smoothly() -> None:
     """Of a film a third of L across a tenth of L follows: wholly at the loop, and towards
     the strip's end as the square of what is left of its width."""
     mesh = shapes.mesh_of(*shapes.disk_points(40))
-    weight = made_at(mesh, mesh.x).variations.weight
+    weight = made_at(mesh, mesh.x).variations.strip.weight
     assert (weight[mesh.loop] == 1).all()
     gap = mesh.x[mesh.interior][:, None] - mesh.x[mesh.loop][None]
     left = 1 - np.linalg.norm(gap, axis=2).min(axis=1) / 0.1

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.loop.lengths import close_with_lengths, jacobian, project_lengths
+from eulerplateau.loop.lengths import (
+    close_with_lengths,
+    jacobian,
+    project_lengths,
+    quickly_projected,
+)
 from eulerplateau.loop.loop import Loop
 from eulerplateau.loop.turns import LengthMetric
 from eulerplateau.mesh.disk import Disk
@@ -47,6 +52,30 @@ def test_projection_meets_the_lengths_to_rounding(oval: Disk, loop: Loop) -> Non
         found = project_lengths(loop, shapes.crumpled(oval, size)[oval.loop])
         assert found is not None
         assert loop.length_error(found) < 1e-14
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("spread", [0.3, 0.9])
+def test_projection_by_compiled_loops_is_the_same(d: int, spread: float) -> None:
+    """Of even and of very uneven edges, in space and in a plane; none of no loop."""
+    rng = np.random.default_rng(d)
+    lengths = rng.uniform(1 - spread, 1 + spread, 40)
+    loop = Loop(lengths / lengths.sum())
+    turns = 2 * np.pi * np.cumsum(loop.rest_lengths)
+    x = np.stack([np.cos(turns), np.sin(turns), np.sin(2 * turns)][:d], axis=1) / (
+        2 * np.pi
+    )
+    for size in (1e-6, 1e-3, 1e-2):
+        start = x + size * rng.standard_normal(x.shape)
+        given, found = start.copy(), quickly_projected(loop, start)
+        exact = project_lengths(loop, start)
+        assert found is not None
+        assert exact is not None
+        assert (start == given).all()
+        assert loop.length_error(found) < 1e-13
+        np.testing.assert_allclose(found, exact, atol=1e-14)
+    assert quickly_projected(loop, np.ones_like(x)) is None
+    assert quickly_projected(loop, np.full_like(x, np.nan)) is None
 
 
 def test_projection_leaves_a_loop_that_keeps_its_lengths_where_it_is(

@@ -19,7 +19,7 @@ from eulerplateau.loop.motions import rigid_motions, sliding
 from eulerplateau.mesh.disk import Disk
 from eulerplateau.mesh.polygon import polygon_area
 from eulerplateau.mesh.triangles import cotangents
-from eulerplateau.solvers.in_plane import kernels as plane_kernels
+from eulerplateau.solvers.in_plane import kernels as plane_kernels, turn_kernels
 from eulerplateau.solvers.in_plane.chain import Chain, Point
 from eulerplateau.solvers.second_variation import tangent_model
 from tests.helpers import shapes, twins
@@ -188,7 +188,7 @@ def test_norm_of_turns_is_that_of_their_displacement(chain: Chain) -> None:
     columns = root[:, None] * moves(chain, point).reshape(len(root), -1)
     columns -= rigid @ (rigid.T @ columns)
     row = np.empty(len(turns))
-    size = slide_kernels.mass_row(
+    size = turn_kernels.mass_row(
         point.units,
         point.points,
         chain.loop.mean_lengths,

@@ -11,7 +11,7 @@ from eulerplateau.arrays import FloatArray
 from eulerplateau.loop import Loop, slide_kernels
 from eulerplateau.mesh import polygon_gradient
 from eulerplateau.solvers.equilibrium import Stability
-from eulerplateau.solvers.in_plane import kernels as plane_kernels
+from eulerplateau.solvers.in_plane import kernels as plane_kernels, turn_kernels
 
 # Weight of the closed chain against its energy, per 1 + load: large enough for the pivots
 # to count as the Hessian of closed chains does, and small against 1 / eps.
@@ -76,7 +76,10 @@ class Chain:
         units, points = np.empty((n, 2)), np.empty((n + 1, 2))
         gradient, row = np.empty(n), np.empty(n)
         value = plane_kernels.energy_gradient(angles, s, self.load, units, points, gradient)
-        slide_kernels.slide_row(units, points, self.loop.mean_lengths, s, row)
+        means = self.loop.mean_lengths
+        slide = units + np.concatenate([units[-1:], units[:-1]])
+        slide_kernels.keep_lengths(units, means, slide)
+        turn_kernels.slide_row(units, points, means, s, slide, row)
         return Point(angles, value, units, points, gradient, row)
 
     def pull(self, point: Point) -> FloatArray:
@@ -170,7 +173,7 @@ class Chain:
         return Stability(np.array([self.softest(factors)[0]]), 10 * eps * stiffest)
 
     def _mass(self, point: Point, turns: FloatArray, row: FloatArray) -> float:
-        return slide_kernels.mass_row(
+        return turn_kernels.mass_row(
             point.units,
             point.points,
             self.loop.mean_lengths,

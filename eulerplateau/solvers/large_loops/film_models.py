@@ -22,7 +22,13 @@ from scipy.linalg.lapack import dgeqrf, dorgqr
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.film import AreaOfLoop, IndefiniteFactor, LoopStiffness
-from eulerplateau.loop import Loop, LoopEnergy, orthonormal_motions, slide_kernels
+from eulerplateau.loop import (
+    RIGID_MOTIONS,
+    Loop,
+    LoopEnergy,
+    orthonormal_motions,
+    slide_kernels,
+)
 from eulerplateau.solvers.equilibrium import Stability
 from eulerplateau.solvers.models import DenseModels, Model
 from eulerplateau.solvers.second_variation import (
@@ -82,7 +88,10 @@ class FilmModel:
         chain = self.loop.chain(self.tensions)
         scale = float(chain[0].max())
         along = scale * self.loop.chords(self.x) / self.loop.rest_lengths[:, None]
-        return LoopStiffness(chain, along, self.motions, pinned, scale)
+        # As many columns whether sliding is a rotation or not: matrices of one pattern.
+        held = np.zeros((self.motions.shape[0], RIGID_MOTIONS + 1))
+        held[:, : self.motions.shape[1]] = self.motions
+        return LoopStiffness(chain, along, held, pinned, scale)
 
     @cached_property
     def bare(self) -> IndefiniteFactor | None:
@@ -91,7 +100,7 @@ class FilmModel:
 
     def n_below(self, factor: IndefiniteFactor) -> int:
         """Return how many directions in the tangent space lead down."""
-        return factor.n_negative - len(self.x) - int(self.stiffness.held.shape[1])
+        return factor.n_negative - len(self.x) - int(self.motions.shape[1])
 
     def newton_step(self, radius: float) -> NewtonStep | None:
         """Return the Newton step, cut short at the radius.

@@ -72,7 +72,7 @@ def layers(before: IntArray, depth: FloatArray) -> IntArray:
 
 
 def _rings(before: IntArray, n: int) -> IntArray:
-    """Return the number (n,) of the ring that each of n things is in, if alone in its own."""
+    """Return the number (n,) of the ring of each of n things; most are alone in theirs."""
     left, fewer = before, before[:0]
     while len(left):
         later = np.zeros(n, dtype=bool)

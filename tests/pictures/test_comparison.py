@@ -197,8 +197,13 @@ def long_names(sweep: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Pa
     return [Path(copytree(sweep, folder / name)) for name in names]
 
 
-@pytest.mark.parametrize("what", OF_ANY_FILM)
-@pytest.mark.parametrize("count", [1, 4])
+@pytest.mark.parametrize(
+    ("count", "what"),
+    quick_with(
+        [*((1, what) for what in OF_ANY_FILM), (4, "diagram"), (4, "onset")],
+        product([1, 4], OF_ANY_FILM),
+    ),
+)
 def test_nothing_leaves_the_figure(
     long_names: list[Path], figure_of: Callable[[str], Figure], what: str, count: int
 ) -> None:

@@ -60,7 +60,7 @@ def test_in_other_units_all_agrees_to_rounding(
     )
 
 
-@pytest.mark.parametrize("make", [oval, hexagon])
+@pytest.mark.parametrize("make", quick_with([hexagon], [oval, hexagon]))
 @pytest.mark.parametrize("change", MOTIONS)
 @pytest.mark.parametrize("film", FIXED)
 @pytest.mark.parametrize("tension", TENSIONS)

@@ -111,7 +111,7 @@ def branches_figure(run: Run) -> Figure:
             ax.ticklabel_format(useOffset=False)
     for column in axes.T:
         _name_loads(column, loads.values())
-    figure.align_ylabels()
+    figure.align_ylabels(axes[:, 0])
     legend_above(figure, handles)
     return figure
 

@@ -55,12 +55,8 @@ def layers(before: IntArray, depth: FloatArray) -> IntArray:
     depth : (n,) float, greater nearer to the eye: decides among things that would have to
         be painted each before the next, in a ring
     """
-    from scipy.sparse import coo_array  # slow to load, and only films need it
-    from scipy.sparse.csgraph import connected_components
-
     n = len(depth)
-    graph = coo_array((np.ones(len(before)), (before[:, 0], before[:, 1])), shape=(n, n))
-    _, ring = connected_components(graph, connection="strong")
+    ring = _rings(before, n)
     inside = np.lexsort((depth, ring))
     chained = ring[inside[:-1]] == ring[inside[1:]]
     chain = np.stack([inside[:-1], inside[1:]], axis=1)[chained]
@@ -73,6 +69,26 @@ def layers(before: IntArray, depth: FloatArray) -> IntArray:
         if (raised == found).all():
             return found
         found = raised
+
+
+def _rings(before: IntArray, n: int) -> IntArray:
+    """Return the number (n,) of the ring of each of n things; most are alone in theirs."""
+    left, fewer = before, before[:0]
+    while len(left):
+        later = np.zeros(n, dtype=bool)
+        later[left[:, 1]] = True
+        fewer = left[later[left[:, 0]]]
+        if len(fewer) == len(left):
+            break
+        left = fewer
+    if not len(left):
+        return np.arange(n)
+    from scipy.sparse import coo_array  # slow to load, and few films need it
+    from scipy.sparse.csgraph import connected_components
+
+    graph = coo_array((np.ones(len(before)), (before[:, 0], before[:, 1])), shape=(n, n))
+    ring: IntArray = connected_components(graph, connection="strong")[1]
+    return ring
 
 
 def overlaps(corners: FloatArray) -> IntArray:

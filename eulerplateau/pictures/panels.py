@@ -122,6 +122,11 @@ def draw_panels(
             _hold(line[0], what.ticks, margin)
         if what.limits is not None:
             line[0].set_ylim(*what.limits)
+    # An axis without numbers needs no room.
+    for ax in axes[:-1].flat:
+        ax.xaxis.set_in_layout(False)
+    for ax in axes[:, 1:].flat if one_height else ():
+        ax.yaxis.set_in_layout(False)
     for ax in axes.flat:
         dash_once(ax)
     return axes

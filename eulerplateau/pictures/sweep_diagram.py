@@ -102,7 +102,7 @@ def diagram_figure(run: Run) -> Figure:
     )
     if shown:
         number_shapes(axes[0], window, [run], [shown], kind)
-    (part or figure).align_ylabels()
+    (part or figure).align_ylabels(axes[:, 0])
     handles = axes[0, 0].get_legend_handles_labels()[0]
     legend_above(part or figure, handles)
     return figure

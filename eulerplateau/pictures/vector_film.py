@@ -130,7 +130,9 @@ def _rim(shape: Shape, parents: IntArray) -> IntArray:
 
 def _inside(corners: FloatArray, ends: FloatArray, radius: float) -> IntArray:
     """Return pairs (m, 2) of a part of the film and a stretch of wire it reaches into."""
-    from scipy.spatial import cKDTree  # slow to load, and only films need it
+    if not radius:
+        return np.empty((0, 2), dtype=np.int64)
+    from scipy.spatial import cKDTree  # slow to load, and only thick wires need it
 
     points, middles = cKDTree(corners.reshape(-1, 3)), cKDTree(ends.mean(axis=1))
     near = points.sparse_distance_matrix(middles, radius, output_type="ndarray")

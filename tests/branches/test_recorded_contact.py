@@ -64,7 +64,8 @@ def both_sides(found: list[Place]) -> list[BranchPoint]:
 @pytest.mark.parametrize(
     ("edges", "shift", "until"),
     [
-        (24, 0.3, 3700.0),
+        (24, 0.3, 3600.0),
+        pytest.param(24, 0.3, 3700.0, marks=pytest.mark.slow),
         pytest.param(24, 0.0, 5000.0, marks=pytest.mark.slow),
         pytest.param(48, 0.3, 5000.0, marks=pytest.mark.slow),
     ],

@@ -26,6 +26,7 @@ from eulerplateau.solvers.problem import Problem
 from tests.helpers import diagram, shapes
 from tests.helpers.diagram import CONTROL, Diagram
 from tests.helpers.equilibria import planar
+from tests.helpers.marks import quick_with
 from tests.helpers.shapes import fitted_order
 
 PRECISION = 1e-8  # relative, of the loads at 474 vertices
@@ -83,7 +84,8 @@ def test_loads_agree_with_interpolated_eigenvalues(
 
 
 @pytest.mark.parametrize(
-    ("low", "high", "step"), [(600.0, 700.0, 0.03), (655.0, 1200.0, 0.004)]
+    ("low", "high", "step"),
+    quick_with([(600.0, 700.0, 0.03)], [(600.0, 700.0, 0.03), (655.0, 1200.0, 0.004)]),
 )
 def test_onset_does_not_depend_on_window_start_or_step(
     found: Diagram, onset: SpecialPoint, low: float, high: float, step: float

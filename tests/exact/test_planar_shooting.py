@@ -17,6 +17,7 @@ from scipy.optimize import root
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.exact.planar import planar_film, thresholds
+from tests.helpers.marks import quick_with
 
 KAPPA, SLOPE, ANGLE, Y, AREA, BENDING = range(6)
 # Curvature of the tip, beta, and the rest of the unknowns: this far off at the start.
@@ -90,7 +91,10 @@ def test_first_contact_of_two_lobes_to_ten_digits(diameter: float | None) -> Non
 
 @pytest.mark.parametrize(
     ("n", "diameter"),
-    [(3, None), (4, None), (6, None), (12, None), (3, 0.04), (12, 0.01)],
+    quick_with(
+        [(3, None), (12, None), (3, 0.04)],
+        [(3, None), (4, None), (6, None), (12, None), (3, 0.04), (12, 0.01)],
+    ),
 )
 def test_first_contact_of_more_lobes_to_ten_digits(n: int, diameter: float | None) -> None:
     sigma = thresholds(n, diameter).sigma_contact
@@ -113,7 +117,10 @@ def test_first_contact_of_more_lobes_to_ten_digits(n: int, diameter: float | Non
 
 @pytest.mark.parametrize(
     ("n", "diameter"),
-    [(2, None), (3, None), (5, None), (12, None), (2, 0.06), (3, 0.02), (12, 0.005)],
+    quick_with(
+        [(2, None), (12, None), (3, 0.02)],
+        [(2, None), (3, None), (5, None), (12, None), (2, 0.06), (3, 0.02), (12, 0.005)],
+    ),
 )
 def test_onset_of_line_contact_to_ten_digits_and_its_beta(
     n: int, diameter: float | None
@@ -153,7 +160,11 @@ def test_onset_of_line_contact_to_ten_digits_and_its_beta(
 
 
 @pytest.mark.parametrize(
-    ("n", "diameter"), [(2, None), (3, None), (8, None), (2, 0.05), (3, 0.02), (8, 0.008)]
+    ("n", "diameter"),
+    quick_with(
+        [(2, None), (8, None), (3, 0.02)],
+        [(2, None), (3, None), (8, None), (2, 0.05), (3, 0.02), (8, 0.008)],
+    ),
 )
 def test_point_contact_films(n: int, diameter: float | None) -> None:
     limits = thresholds(n, diameter)

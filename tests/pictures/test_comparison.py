@@ -6,6 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from shutil import copytree
 from typing import Any
@@ -32,6 +33,7 @@ from eulerplateau.pictures.figure import save
 from eulerplateau.pictures.onset import fit_onset
 from eulerplateau.runs.record import read_runs
 from eulerplateau.solvers.equilibrium import Status
+from tests.helpers.marks import quick_with
 from tests.helpers.plotted_runs import ONSET, pitchfork, record, row_at, swept
 from tests.helpers.shapes import disk_points, mesh_of
 
@@ -114,8 +116,13 @@ def test_a_plot_is_its_figure(tmp_path: Path, sweep: Path) -> None:
     assert (tmp_path / "plot.png").read_bytes() == (tmp_path / "figure.png").read_bytes()
 
 
-@pytest.mark.parametrize("what", OF_ANY_FILM)
-@pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
+# Every plot, and every format.
+QUICK = [*((what, "png") for what in OF_ANY_FILM), ("diagram", "pdf"), ("diagram", "svg")]
+
+
+@pytest.mark.parametrize(
+    ("what", "ending"), quick_with(QUICK, product(OF_ANY_FILM, ["png", "pdf", "svg"]))
+)
 def test_every_plot_is_drawn_in_every_format(
     tmp_path: Path, figure_of: Callable[[str], Figure], what: str, ending: str
 ) -> None:
@@ -190,8 +197,13 @@ def long_names(sweep: Path, tmp_path_factory: pytest.TempPathFactory) -> list[Pa
     return [Path(copytree(sweep, folder / name)) for name in names]
 
 
-@pytest.mark.parametrize("what", OF_ANY_FILM)
-@pytest.mark.parametrize("count", [1, 4])
+@pytest.mark.parametrize(
+    ("count", "what"),
+    quick_with(
+        [*((1, what) for what in OF_ANY_FILM), (4, "diagram"), (4, "onset")],
+        product([1, 4], OF_ANY_FILM),
+    ),
+)
 def test_nothing_leaves_the_figure(
     long_names: list[Path], figure_of: Callable[[str], Figure], what: str, count: int
 ) -> None:
@@ -321,7 +333,10 @@ def test_what_falls_and_what_is_unstable_are_told_apart(tmp_path: Path, mesh: Di
     assert dashes["unstable"] != dashes["load falling"]
 
 
-@pytest.mark.parametrize("what", ["diagram", "energy", "curvature", "eigenvalue"])
+@pytest.mark.parametrize(
+    "what",
+    quick_with(["diagram", "eigenvalue"], ["diagram", "energy", "curvature", "eigenvalue"]),
+)
 @pytest.mark.parametrize("case", ["no eigenvalues", "one row", "stalled", "infinite"])
 def test_every_run_has_a_plot(tmp_path: Path, mesh: Disk, what: str, case: str) -> None:
     rows = [row_at(step, load) for step, load in enumerate((1.0, 660.0, 700.0))]

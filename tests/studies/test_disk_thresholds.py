@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from scripts.studies.disk_thresholds.thresholds import CIRCLE, HEXAGON, Case, thresholds
+from tests.helpers.marks import quick_with
 
 PI3 = np.pi**3
 SIZES = (0, 1, 2)
 
 
-@pytest.mark.parametrize("mesh", ["Delaunay", "Frontal-Delaunay"])
+@pytest.mark.parametrize("mesh", quick_with(["Delaunay"], ["Delaunay", "Frontal-Delaunay"]))
 def test_dirichlet_disk_converges_to_its_thresholds_at_second_order_on_any_mesh(
     mesh: str,
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -23,6 +24,7 @@ WORDS = {
     "written": "tables, shapes, run.json",
     "drawn": "the diagram",
     "the rest": "the rest",
+    "ended": "the end of the process",
     "beside": "all but the solver",
     "all": "all",
 }
@@ -38,9 +40,18 @@ def carried_out(command: str, pictures: bool) -> dict[str, float]:
         if not pictures:
             words.append("--no-pictures")
         module = [sys.executable, "-P", "-m", "scripts.studies.overheads.parts", str(told)]
+        began = _children()
         subprocess.run([*module, *words], check=True, env=kept)
+        whole = _children() - began
         found: dict[str, float] = json.loads(told.read_text())
-    return {**found, "beside": found["all"] - found["solved"]}
+    ended = whole - found["all"]
+    return {**found, "ended": ended, "beside": whole - found["solved"], "all": whole}
+
+
+def _children() -> float:
+    """Return the seconds of CPU of all processes that were started here and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def large_film() -> str:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from eulerplateau import pictures
-from eulerplateau.cli import main
+from eulerplateau.__main__ import main
 from eulerplateau.runs import folder, recording
 
 # Of each command the module, what begins in it, and what solves.

@@ -7,7 +7,7 @@
     between.py      where between two points something vanishes
     special.py      what a fold or a bifurcation is, and the branches that leave it
     kinks.py        where what bounds a loop changes; of strands that touch: gap_bounds.py,
-                    contact.py
+                    contact.py, places.py; everywhere.py and exchange.py: without overlaps
     locus.py        folds and bifurcations in two parameters, point by point
                     (locus_ahead.py, locus_point.py, normal_form.py), what is special on
                     them (locus_between.py); film_locus.py: those of a film

@@ -7,7 +7,7 @@ from .exploration import (
     explore_from as explore_from,
     explore_on as explore_on,
 )
-from .family import Family as Family
+from .family import Family as Family, UnboundedFamily as UnboundedFamily
 from .film_family import (
     FilmFamily as FilmFamily,
     equilibrium as equilibrium,

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from eulerplateau.branches.brent import zero_between
-from eulerplateau.branches.control import StepControl
+from eulerplateau.branches.control import Hyperplane, StepControl
 from eulerplateau.branches.point import NOISE, BranchPoint, along, correct
 
 _PRECISION = 1e-14
@@ -86,7 +86,7 @@ class Interval:
         guess = low.x + part * (high.x - low.x)
         value = low.value + part * (high.value - low.value)
         found = correct(
-            self.before.family,
+            self.before.family.steady(self.before.x),
             guess,
             value,
             self.before.direction,
@@ -95,7 +95,11 @@ class Interval:
         )
         if found is None:
             raise ArithmeticError
-        return replace(found, arclength=self.before.arclength + step)
+        plane = Hyperplane(guess, value, self.before.direction, self.control)
+        there: BranchPoint | None = found.family.settled(found, plane)
+        if there is None:
+            raise ArithmeticError
+        return replace(there, arclength=self.before.arclength + step)
 
     def error(self, point: BranchPoint, index: int) -> float:
         """Return what rounding in an eigenvalue can have moved its zero by."""

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.family import Family
-from eulerplateau.branches.gap_bounds import NO_TOUCH, GapBounds, Touch
+from eulerplateau.branches.gap_bounds import GapBounds
+from eulerplateau.branches.places import NO_TOUCH, Touch, steady
 from eulerplateau.branches.point import BranchPoint, point_near
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import (
@@ -32,6 +33,8 @@ from eulerplateau.solvers import TangentModel, contacts_at
 # Gaps in units of L that are closed, or nearly; and times that what touches is changed
 # until nothing pulls and nothing overlaps.
 _CLOSED = 1e-6
+# Of places that are given, those so many edges from one before them are the same.
+_BESIDE = 0.1
 _CHANGES = 40
 
 
@@ -68,12 +71,17 @@ class Contact:
         return self.touch.gaps
 
     def with_closed(self, gaps: Gaps) -> Contact:
-        """Return the same with other gaps closed."""
-        return replace(self, touch=Touch(gaps, ~gaps.slides))
+        """Return the same contacts closed at other gaps."""
+        return replace(self, touch=self.touch.with_places(self.strands, gaps))
 
     def near(self, x: FloatArray) -> Contact:
         """Return the gaps of the kind, and at the places, they should be at x (n, d)."""
         touch = GapBounds(self.strands, self.touch).settled(x)
+        return self if touch is self.touch else replace(self, touch=touch)
+
+    def steady(self, x: FloatArray) -> Contact:
+        """Return the same as it is held on the way from a loop x (n, d)."""
+        touch = steady(self.strands, x, self.touch)
         return self if touch is self.touch else replace(self, touch=touch)
 
     def beyond(self, point: BranchPoint, loop: Loop, which: int) -> tuple[Contact, str]:
@@ -122,15 +130,21 @@ def contact_near(
         near, _ = contact.strands.near(x, _CLOSED)
         # Along a line strands may be closer between two vertices than at any.
         near = near.joined(contact.strands.nearest(x, _CLOSED))
-    near = near[contact.strands.distinct(near)]
+        near = near[contact.strands.distinct(near)]
+    near = near[contact.strands.distinct(near, _BESIDE)]
     for _ in range(_CHANGES):
         assert near is not None
-        contact = replace(contact, touch=Touch(near, np.zeros(len(near), dtype=bool)))
+        points = Touch(near, np.zeros(len(near), dtype=bool))
+        contact = replace(contact, touch=points).near(x)
         found = point_near(family(contact), x, value, -np.inf)
         if found is None:
             break
         x, tensions, bounds = found.x, found.model.tensions, contact.bounds(loop)
         near = bounds.mended(x, tensions)
         if near is None:
-            return replace(contact, touch=bounds.told(x, tensions)).near(x), x
+            told = replace(contact, touch=bounds.told(x, tensions))
+            contact = told.near(x)
+            if contact is told:
+                break
+            near = contact.gaps
     return contact, x

@@ -51,7 +51,7 @@ class Kink:
     error: float
 
 
-Kinks = Callable[[BranchPoint, BranchPoint, StepControl], Kink | None]
+Kinks = Callable[[BranchPoint, BranchPoint, StepControl], tuple[BranchPoint, Kink | None]]
 
 
 @dataclass(frozen=True)
@@ -81,8 +81,11 @@ def never(before: BranchPoint, after: BranchPoint) -> bool:
     return False
 
 
-def smooth(before: BranchPoint, after: BranchPoint, control: StepControl) -> None:
-    """Return no kink: that of a family whose loops are not bounded."""
+def smooth(
+    before: BranchPoint, after: BranchPoint, control: StepControl
+) -> tuple[BranchPoint, None]:
+    """Return the latter point and no kink: of a family whose loops are not bounded."""
+    return after, None
 
 
 def follow(
@@ -121,32 +124,44 @@ def next_place(
     """
     if place.left == 0:
         return None
-    point, step, after, kink = place.point, place.step, None, None
-    while after is None:
-        after = advance(point, step, control)
-        if after is None or (step > _LEAST_LEAP and leaps(point, after)):
-            after = None
-        else:
-            try:
-                kink = kinks(point, after, control)
-            except LostError:
-                after = None
-        if after is None:
-            step *= 0.5
-            if step < control.smallest_step:
-                return None
+    point, step = place.point, place.step
+    while (found := _stepped(point, step, control, leaps, kinks)) is None:
+        step *= 0.5
+        if step < control.smallest_step:
+            return None
+    after, kink = found
     if after.corrections <= _EASY:
         step = min(1.5 * step, control.largest_step)
     if kink is not None:
+        kink = replace(kink, before=recentred(kink.before, control))
         after = kink.after
     return Place(recentred(after, control), step, place.left - 1, kink)
+
+
+def _stepped(
+    point: BranchPoint,
+    step: float,
+    control: StepControl,
+    leaps: Callable[[BranchPoint, BranchPoint], bool],
+    kinks: Kinks,
+) -> tuple[BranchPoint, Kink | None] | None:
+    """Return the point after a step, and the kink before it; None if none is reached."""
+    after = advance(point, step, control)
+    if after is None:
+        return None
+    try:
+        after, kink = kinks(point, after, control)
+    except LostError:
+        return None
+    end = after if kink is None else kink.before
+    return None if step > _LEAST_LEAP and leaps(point, end) else (after, kink)
 
 
 def advance(point: BranchPoint, step: float, control: StepControl) -> BranchPoint | None:
     """Return the branch point at arclength `step` from `point`; None if not corrected."""
     guess = point.x + step * point.direction.displacement
     value = point.value + step * point.direction.rate
-    after = correct(point.family, guess, value, point.direction, control)
+    after = correct(point.family.steady(point.x), guess, value, point.direction, control)
     if after is None or not point.energy.reaches(point.x, after.x):
         return None
     # A step that turns sharply has landed on a branch that crosses this one.

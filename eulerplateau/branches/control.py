@@ -74,3 +74,20 @@ class Motion:
     def __sub__(self, other: Motion) -> Motion:
         """Return the difference of two."""
         return self + other * -1.0
+
+
+@dataclass(frozen=True)
+class Hyperplane:
+    """All loops and values across a way from one: where a point of a branch is sought.
+
+    Attributes
+    ----------
+    x : (n, d) float
+    value : float, of the parameter
+    way : the direction it is normal to
+    """
+
+    x: FloatArray
+    value: float
+    way: Direction
+    control: StepControl

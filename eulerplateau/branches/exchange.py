@@ -21,9 +21,10 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import BoolArray, FloatArray
-from eulerplateau.branches.gap_bounds import single
+from eulerplateau.branches.places import FLAT, single
 from eulerplateau.interruption import heed
 from eulerplateau.loop import (
+    ALONG,
     NO_GAPS,
     Gaps,
     LoopEnergy,
@@ -41,7 +42,7 @@ from eulerplateau.solvers import (
 
 # Parts of the diameter: by which strands may overlap between places on the way, and in the
 # end, where these are nearest; and gaps that may be closed there.
-_OVERLAP, _SHARP, _CLOSE = 1e-6, 1e-9, 1e-5
+_OVERLAP, _SHARP, _EXACT, _CLOSE = 1e-6, 1e-9, 1e-12, 1e-5
 # No place is held beside another that is nearer than this, in edges; those that cannot be
 # closed at once hang together: of those within so many of one before them, it alone is.
 _BESIDE, _TOGETHER = 0.02, (0.0, 0.1, 0.3)
@@ -52,21 +53,31 @@ _RADIUS = 0.05
 
 @dataclass(frozen=True)
 class Held(Touching):
-    """A loop at rest with gaps closed, its strands, and its energy without contact."""
+    """A loop at rest with gaps closed, its strands, and its energy without contact.
+
+    Attributes
+    ----------
+    within : places of the contacts that stay; None where others may come, and these part
+    """
 
     strands: Strands = field(kw_only=True)
     energy: LoopEnergy = field(kw_only=True)
+    within: Gaps | None = field(kw_only=True, default=None)
 
     @property
     def pulls(self) -> BoolArray:
         """Where (k,) strands pull at each other, by more than a force is off by."""
         pulls: BoolArray = self.forces < -self.uncertain
+        if self.within is not None:
+            pulls = pulls & ~single(self.strands, self.gaps)
         return pulls
 
     def nearest(self, reach: float) -> Gaps:
         """Return where gaps are least, below so many diameters, that are not held."""
         gaps, strands = self.gaps, self.strands
         low = strands.nearest(self.model.x, reach * strands.diameter)
+        if self.within is not None:
+            low = low[~strands.unlike(low, self.within.joined(gaps), ALONG)]
         low = low[strands.unlike(low, gaps, _BESIDE)]
         low = low[strands.distinct(low, _BESIDE)]
         return from_one_strand(strands.knots, low, gaps[~gaps.slides])
@@ -79,8 +90,13 @@ Rest = Callable[[FloatArray, Gaps], State | None]
 
 def without_overlaps(state: State, rest: Rest[State]) -> State | None:
     """Return the state next to one at which no strands overlap, or pull; None if lost."""
-    if state.gaps.slides.all() and not len(state.nearest(-_SHARP)):
+    told = _told(state) == state.gaps.slides
+    if told.all() and not state.pulls.any() and not len(state.nearest(-_EXACT)):
         return state
+    # Near enough, where strands are nearest is where they touch: there is no way to go.
+    slid = _sharpened(state, rest)
+    if slid is not None and not len(slid.nearest(-_OVERLAP)) and not slid.pulls.any():
+        return slid
     known, found = NO_GAPS, state
     for _ in range(_STEPS):
         heed()
@@ -126,7 +142,7 @@ def _sets(strands: Strands, x: FloatArray, gaps: Gaps) -> Iterator[Gaps]:
 def _sharpened(state: State, rest: Rest[State]) -> State | None:
     """Return the state with strands held where they are nearest; None if lost.
 
-    A place that has none beside it is a point of contact, and slides.
+    They slide with it, but where the distance is too flat to tell where that is.
     """
     points = state.gaps[state.gaps.slides]
     low = replace(state, gaps=points).nearest(_CLOSE)
@@ -141,9 +157,15 @@ def _sharpened(state: State, rest: Rest[State]) -> State | None:
             continue
         low = found.nearest(-_SHARP)
         if not len(low):
-            return rest(x, replace(gaps, slides=single(found.strands, gaps)))
+            return rest(x, replace(gaps, slides=_told(found)))
         gaps = gaps.joined(_sliding(low))
     return None
+
+
+def _told(state: Held) -> BoolArray:
+    """Return which places (k,) slide: where it is not too flat to tell where to."""
+    told: BoolArray = state.strands.spreading(state.model.x, state.gaps) > FLAT
+    return told
 
 
 def _joined(strands: Strands, gaps: Gaps, others: Gaps) -> Gaps:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, Self, TypeVar
 
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
+from eulerplateau.branches.control import Hyperplane
 from eulerplateau.loop import LoopEnergy
+
+Point = TypeVar("Point")
 
 
 class Family(Protocol):
@@ -40,6 +43,15 @@ class Family(Protocol):
     def rests(self, model: Any, value: float) -> bool:
         """Return whether forces balance at a point's TangentModel, as at an equilibrium."""
 
+    def settled(self, point: Any, plane: Hyperplane) -> Any | None:
+        """Return what stands for a BranchPoint of a hyperplane; None if there is none.
+
+        Itself, but for strands that touch: where they do they overlap nowhere then.
+        """
+
+    def steady(self, x: FloatArray) -> Family:
+        """Return the family in which steps from a loop x (n, d) are taken."""
+
     def released(self, x: FloatArray) -> Family:
         """Return the family whose film is free to move inside its surface, if it can be."""
 
@@ -48,3 +60,15 @@ class Family(Protocol):
 
     def restored(self, kept: Mapping[str, NDArray[Any]]) -> Family:
         """Return the family that this was `kept` of, itself where it is no other."""
+
+
+class UnboundedFamily:
+    """What a Family knows of strands that touch if nothing bounds its loops."""
+
+    def settled(self, point: Point, plane: Hyperplane) -> Point:
+        """Return the point."""
+        return point
+
+    def steady(self, x: FloatArray) -> Self:
+        """Return itself."""
+        return self

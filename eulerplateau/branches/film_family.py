@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.control import Direction
+from eulerplateau.branches.control import Direction, Hyperplane
 from eulerplateau.branches.likeness import Likeness, likeness
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.film import FilmOfLoop
@@ -46,6 +46,10 @@ class NoContact:
         return energy
 
     def near(self, x: FloatArray) -> NoContact:
+        """Return itself."""
+        return self
+
+    def steady(self, x: FloatArray) -> NoContact:
         """Return itself."""
         return self
 
@@ -111,6 +115,19 @@ class FilmFamily:
         They do along those of the shape that the film was made near, until it has turned.
         """
         return self._recorded(model, value).converged
+
+    def settled(self, point: BranchPoint, plane: Hyperplane) -> BranchPoint | None:
+        """Return the point at which no strands overlap where they touch."""
+        if self.problem.loop.diameter is None:
+            return point
+        # Loaded for such loops only.
+        from eulerplateau.branches.everywhere import contacts_settled
+
+        return contacts_settled(point, plane)
+
+    def steady(self, x: FloatArray) -> FilmFamily:
+        """Return the family in which steps from a loop x (n, d) are taken."""
+        return self.on(self.film, self.contact.steady(x))
 
     def released(self, x: FloatArray) -> FilmFamily:
         """Return the film as a minimal surface, where it is curved."""

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from eulerplateau.arrays import FloatArray
-from eulerplateau.branches.control import StepControl
+from eulerplateau.branches.control import Hyperplane, StepControl
 from eulerplateau.branches.exploration import (
     DiagramPoint,
     Limits,
@@ -104,7 +104,10 @@ def film_point(
     """Return the branch point at an equilibrium, heading for higher values."""
     near = family_near(problem, found.shape, parameter, found.load, found.contacts)
     family, x_loop = near
-    return first_point(family, x_loop, problem.value(parameter, found.load), control)
+    first = first_point(family, x_loop, problem.value(parameter, found.load), control)
+    way = across_values(first.x, control.unit)
+    plane = Hyperplane(first.x, first.value, way, control)
+    return family.settled(first, plane) or first
 
 
 def equilibrium_near(

@@ -17,12 +17,14 @@ import numpy as np
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.between import Interval
 from eulerplateau.branches.continuation import Kink, LostError
-from eulerplateau.branches.control import StepControl
+from eulerplateau.branches.control import Hyperplane, StepControl
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.point import BranchPoint, correct, point_on
 
 # Margins down to this are rounding's; and what rounding leaves of one.
 _ROUNDING, _MARGIN = 1e-9, 1e-12
+# Tries after which a margin is as near to zero as what strands overlap by lets it be.
+_TRIES = 16
 # Arclength below which a kink is the one a branch has just left; and those after which it
 # is looked at whether bounds are kept to: the next kink may be near.
 _LEFT = 1e-8
@@ -46,25 +48,28 @@ def margins(point: BranchPoint) -> FloatArray:
 
 def kink_between(
     before: BranchPoint, after: BranchPoint, control: StepControl
-) -> Kink | None:
-    """Return the first kink between two points of one family; None where there is none.
+) -> tuple[BranchPoint, Kink | None]:
+    """Return what stands for the latter of two points, and the first kink between them.
 
-    Raises LostError where a shorter step is needed to tell.
+    None where there is none. Raises LostError where a shorter step is needed to tell.
     """
-    broken = np.flatnonzero(margins(after) < -_ROUNDING)
+    plane = Hyperplane(after.x, after.value, before.direction, control)
+    there = after.family.settled(after, plane)
+    if there is None:
+        raise LostError
+    broken = np.flatnonzero(margins(there) < -_ROUNDING)
     if not len(broken):
-        return None
-    interval = Interval(before, after, control)
+        return there, None
+    interval = Interval(before, there, control)
     found = [(_located(interval, int(which)), int(which)) for which in broken]
     point, which = min(found, key=lambda pair: pair[0].arclength)
     family, what = cast(BoundedFamily, point.family).beyond(point, which)
-    return Kink(
-        point, _gone_on(point, family, control), what, _error(interval, point, which)
-    )
+    on = _gone_on(point, family, control)
+    return there, Kink(point, on, what, _error(interval, point, which))
 
 
 def _located(interval: Interval, which: int) -> BranchPoint:
-    found = interval.locate(partial(_margin, which))
+    found = interval.locate(partial(_margin, which), _TRIES)
     if found is None or found.arclength - interval.before.arclength < _LEFT:
         raise LostError
     return found

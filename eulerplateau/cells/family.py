@@ -17,6 +17,7 @@ from eulerplateau.branches import (
     DiagramPoint,
     Limits,
     StepControl,
+    UnboundedFamily,
     explore_from,
     explore_on,
     first_point,
@@ -41,7 +42,7 @@ _FIRST_STEP, _LARGEST_STEP = 0.02, 0.1
 
 
 @dataclass(frozen=True)
-class CellFamily:
+class CellFamily(UnboundedFamily):
     """A cell under one contractility, or stiffness of its adhesions, after another.
 
     Attributes

@@ -75,6 +75,9 @@ def _spread(strands: Strands, x: FloatArray, gaps: Gaps, forces: FloatArray) -> 
         bends.append(float(_bend(strands, x, place[0]) @ n) - way * push / 4)
     one = along[0] @ along[0] + distance * bends[0]
     other = along[1] @ along[1] - distance * bends[1]
+    if other <= 0.0:
+        # The distance has no minimum by t: as far from a point as a contact can be.
+        return -np.inf
     return float(one - (along[0] @ along[1]) ** 2 / other) / distance
 
 

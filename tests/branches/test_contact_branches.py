@@ -20,7 +20,9 @@ from eulerplateau.branches import (
 )
 from eulerplateau.branches.conformal import opening_load, splitting_load, thick_eight
 from eulerplateau.branches.continuation import Kink, Place, advance, next_place
+from eulerplateau.branches.film_family import recorded
 from eulerplateau.branches.kinks import kink_between, margins
+from eulerplateau.branches.point import across_values
 from eulerplateau.exact.planar import planar_film, thresholds
 from eulerplateau.mesh import Disk
 from eulerplateau.solvers import Equilibrium, Problem, solve
@@ -114,12 +116,19 @@ def test_a_descent_comes_to_the_same_film() -> None:
 
 @pytest.mark.slow
 def test_energy_rises_with_the_load_by_the_area_across_kinks() -> None:
-    """By Simpson's rule from point to point: a smooth piece, then the next."""
-    start = QUICK()[0].point
+    """By Simpson's rule from point to point: a smooth piece, then the next.
+
+    Two points of contact grow out of one, and the area's slope jumps: a piece that is not.
+    """
+    start, pieces = recorded_at(QUICK()[0].point), 0
     for place in QUICK()[1:]:
-        end = place.point if place.kink is None else place.kink.before
-        assert work(start, end) == pytest.approx(energy(end) - energy(start), rel=1e-6)
-        start = place.point
+        end = recorded_at(place.point if place.kink is None else place.kink.before)
+        if len(forces(start)) == len(forces(end)):
+            rise = energy(end) - energy(start)
+            assert work(start, end) == pytest.approx(rise, rel=1e-6)
+            pieces += 1
+        start = recorded_at(place.point)
+    assert pieces > 3
 
 
 def energy(point: BranchPoint) -> float:
@@ -131,8 +140,13 @@ def work(before: BranchPoint, after: BranchPoint) -> float:
         before.family, 0.5 * (before.x + after.x), 0.5 * (before.value + after.value)
     )
     assert middle is not None
+    middle = recorded_at(middle)
     areas = [equilibrium(at).film_energy / at.value for at in (before, middle, after)]
     return float(np.dot([1, 4, 1], areas)) / 6 * (after.value - before.value)
+
+
+def recorded_at(point: BranchPoint) -> BranchPoint:
+    return recorded(point, across_values(point.x, 1.0))
 
 
 @pytest.mark.slow
@@ -291,7 +305,7 @@ def test_the_eight_s_contact_splits_where_the_one_without_a_mesh_does() -> None:
         start = film_point(eight_on(mesh, film, shift), problem, control)
         found = next(
             at.kink.before.value
-            for at in places(start, 5, control)
+            for at in places(start, 20, control)
             if at.kink is not None and at.kink.what == "splits"
         )
         errors.append(found - exact)

@@ -16,6 +16,7 @@ from eulerplateau.branches import (
     FilmFamily,
     Limits,
     StepControl,
+    UnboundedFamily,
     explore_from,
     first_point,
 )
@@ -82,7 +83,7 @@ class ConstraintInColumn:
 
 
 @dataclass(frozen=True)
-class FamilyInColumn:
+class FamilyInColumn(UnboundedFamily):
     family: FilmFamily
 
     @property

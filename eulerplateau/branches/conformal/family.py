@@ -20,6 +20,7 @@ from eulerplateau.branches.conformal.terms import (
     Unknowns,
     WholeLength,
 )
+from eulerplateau.branches.family import UnboundedFamily
 from eulerplateau.branches.point import BranchPoint
 from eulerplateau.exact.conformal import (
     GENERAL,
@@ -44,7 +45,7 @@ from eulerplateau.solvers import (
 
 
 @dataclass(frozen=True)
-class SmoothFamily:
+class SmoothFamily(UnboundedFamily):
     """Films of true area bounded by a rod, that differ in one parameter.
 
     Attributes

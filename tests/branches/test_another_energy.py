@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from eulerplateau.branches import StepControl, first_point, follow
+from eulerplateau.branches import StepControl, UnboundedFamily, first_point, follow
 from eulerplateau.loop import LoopEnergy, Term, Unconstrained
 from eulerplateau.solvers.descent import Descent
 from eulerplateau.solvers.models import DenseModels
@@ -47,10 +47,14 @@ def pinned(k):
     return LoopEnergy(terms, Unconstrained(), np.ones(N), lambda x: nothing)
 
 
+class Rings(UnboundedFamily, SimpleNamespace):
+    pass
+
+
 def test_radius_solves_the_cubic_along_a_branch_of_stiffness():
     """2 N s (1/R + tension R) + N k (R - 1)^2 / 2 is stationary, s = sin(pi / N)."""
     state, _ = Descent(DenseModels(pinned(5.0)), 100).run(CIRCLE * [1.2, 0.8])
-    ring = SimpleNamespace(parameter="stiffness", energy=pinned, rests=lambda *_: True)
+    ring = Rings(parameter="stiffness", energy=pinned, rests=lambda *_: True)
     control = StepControl(window=(5.0, 200.0), unit=100.0)
     first = first_point(ring, state.model.x, 5.0, control)
     for point in (branch := [first, *follow(first, control)]):

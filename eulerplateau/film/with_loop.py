@@ -120,7 +120,7 @@ class FilmWithLoop:
         return self.known[0], np.concatenate([film, loop.entries])
 
     def _elimination(self, loop: LoopStiffness) -> Elimination:
-        """Return it: the same whatever is held, since as many vertices are pinned."""
+        """Return it: the same whatever is held, as all loops of a film pin the same."""
         up, (inside, on_loop), kept = self.strip.places
         first, second = loop.places(len(self.strip.interior))
         row = np.concatenate([up[0], inside, on_loop, kept[0], first])

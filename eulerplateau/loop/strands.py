@@ -241,18 +241,6 @@ class Strands:
         laid: BoolArray = gaps.slides & along
         return laid
 
-    def crossing(self, x: FloatArray, gaps: Gaps) -> BoolArray:
-        """Return where (k,) strands lie along each other that touch at a point by now."""
-        alone = np.array(
-            [
-                (~self.unlike(gaps, gaps[here], ALONG)).sum() <= 2
-                for here in np.eye(len(gaps), dtype=bool)
-            ],
-            dtype=bool,
-        )
-        crossing: BoolArray = ~gaps.slides & alone & (self.parting(x, gaps) >= _PARTING)
-        return crossing
-
     def at(self, x: FloatArray, gaps: Gaps) -> tuple[Gaps, FloatArray]:
         """Return gaps followed to a loop x (n, d), and how wide they are (k,).
 

@@ -74,6 +74,12 @@ class Browser:
         for kind in ("browser", "performance"):
             self.driver.get_log(kind)
         self.driver.get(address)
+        # On a busy machine the driver takes the blank page's end of loading for this one's.
+        self.wait_for(
+            lambda: self.evaluate(
+                "document.readyState === 'complete' && location.href !== 'about:blank'"
+            )
+        )
 
     def evaluate(self, script: str, *arguments: Any) -> Any:
         """Return the value of a JavaScript expression; `arguments` are its arguments."""

@@ -33,4 +33,4 @@ class FreeFilm(LocalFilm):
     def _settled(self, base: FloatArray, state: FilmAtRest) -> FilmAtRest:
         x = at_rest(self.variations, state.x)
         sides, u = self.tiling.sides(x), (x - base)[self.tiling.interior].ravel()
-        return FilmAtRest(self, x, u, sides, self.tiling.gradient(sides))
+        return FilmAtRest(self.alone, x, u, sides, self.tiling.gradient(sides))

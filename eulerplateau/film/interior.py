@@ -27,7 +27,7 @@ is removed as well: u are then all displacements inside, g_i = 0, f = g_b, and S
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -169,6 +169,14 @@ class LocalFilm(ABC):
         field(default_factory=list, init=False, repr=False)
     )
 
+    @cached_property
+    def alone(self) -> LocalFilm:
+        """The same without what was asked for: films know this one.
+
+        A cycle would keep films of gigabytes until garbage is collected.
+        """
+        return replace(self)
+
     @property
     @abstractmethod
     def is_free(self) -> bool:
@@ -229,7 +237,7 @@ class LocalFilm(ABC):
         """Forget the films asked for but one at rest, x (n_v, 3): the next begins there."""
         sides = self.tiling.sides(x)
         gradient = self.tiling.gradient(sides)
-        found = FilmAtRest(self, x, u, sides, gradient)
+        found = FilmAtRest(self.alone, x, u, sides, gradient)
         self._recent[:] = [(x[self.tiling.loop], found)]
 
     def _at(self, base: FloatArray, u: FloatArray) -> FilmAtRest | None:
@@ -238,7 +246,7 @@ class LocalFilm(ABC):
         x[self.tiling.interior] += self.variations.displaced(u)
         before = self.sides.normals
         standing = self.tiling.standing(x, before, LIMITS.folded)
-        return None if standing is None else FilmAtRest(self, x, u, *standing)
+        return None if standing is None else FilmAtRest(self.alone, x, u, *standing)
 
     def _begun(self, base: FloatArray) -> FilmAtRest:
         """Return the film to begin with: the last, and its response as far as it goes."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 from scipy.linalg import LinAlgError
@@ -49,6 +52,22 @@ def local() -> LocalFilm:
     mesh = enneper(4)
     turned = shapes.rotation()
     return local_film(tiling_of(mesh), (mesh.x * [1.1, 1.0, 0.8]) @ turned.T)
+
+
+@pytest.mark.parametrize("mesh", [shapes.mesh_of(*shapes.disk_points(4)), enneper(4)])
+def test_films_go_once_nothing_holds_them(mesh: Disk) -> None:
+    """At once, whatever has been asked of them: of large ones that is hundreds of MiB."""
+    local = local_film(tiling_of(mesh), mesh.x)
+    loop = mesh.x[mesh.loop]
+    gc.disable()
+    try:
+        film = local.relax(loop)
+        assert film.hessian.shape == (loop.size, loop.size)
+        gone = [weakref.ref(film), weakref.ref(local)]
+        del film, local
+        assert [each() for each in gone] == [None, None]
+    finally:
+        gc.enable()
 
 
 def test_force_on_the_loop_leaves_a_remainder_of_second_order(local: LocalFilm) -> None:

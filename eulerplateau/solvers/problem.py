@@ -103,6 +103,14 @@ class Problem:
         object.__setattr__(made, "loop", self.loop.with_value(parameter, value))
         return made, load
 
+    def on(self, disk: Disk) -> Problem:
+        """Return the same problem of a soap film with another mesh."""
+        made = copy(self)
+        object.__setattr__(made, "disk", disk)
+        object.__setattr__(made, "film", make_film(disk, "area"))
+        object.__setattr__(made, "loop", self.loop.on_edges(disk.rest_lengths))
+        return made
+
     def shape(self, x: ArrayLike) -> Shape:
         """Return the disk with its vertices at x (n_v, 3), in units of L.
 

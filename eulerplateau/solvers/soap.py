@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import cast
 
+from scipy.linalg import LinAlgError
+
 from eulerplateau.arrays import FloatArray
+from eulerplateau.errors import MeshError
 from eulerplateau.film import AreaOfLoop, FilmOfLoop
 from eulerplateau.loop import close_with_lengths, largest_turning, quickly_projected
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent, State
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
-from eulerplateau.solvers.large_loops.coarse_start import smoothed
+from eulerplateau.solvers.large_loops.coarse_film import coarse_disk
+from eulerplateau.solvers.large_loops.coarse_start import coarsen, smoothed
 from eulerplateau.solvers.large_loops.film_models import FilmModels
 from eulerplateau.solvers.models import DenseModels, Model, Models
 from eulerplateau.solvers.problem import Problem
@@ -39,8 +44,7 @@ def search(
 
     Tensions are of no use: they follow from the loop.
     """
-    large = len(start.loop) > DENSE_LOOP
-    smooth = smoothed(problem.loop, start.x_loop, _SMOOTH) if large else None
+    smooth = _smooth_start(problem, start, load, max_iterations, observe)
     x_loop = smooth
     if x_loop is None:
         x_loop = close_with_lengths(problem.loop, start.x_loop, quickly_projected)
@@ -59,6 +63,37 @@ def search(
     state, _ = Descent(models, max_iterations).run(x_loop)
     shape = tied.shape(state.model.x)
     return _near(problem, shape, shape.x_loop, load, max_iterations, observe)
+
+
+def _smooth_start(
+    problem: Problem,
+    start: Shape,
+    load: float,
+    max_iterations: int,
+    observe: Callable[[FloatArray], None],
+) -> FloatArray | None:
+    """Return the loop to begin with in place of a large one that is rough; else None.
+
+    That of a coarse film's minimum, which few steps on the mesh bring to its own.
+    """
+    if len(start.loop) <= DENSE_LOOP:
+        return None
+    smooth = smoothed(problem.loop, start.x_loop, _SMOOTH)
+    if smooth is None:
+        return None
+    coarse = coarsen(problem.loop, _SMOOTH)
+
+    def shown(x_loop: FloatArray) -> None:
+        observe(coarse.prolong(x_loop))
+
+    with suppress(MeshError, LinAlgError):
+        other = problem.on(coarse_disk(problem.disk, coarse))
+        tied, x_loop = other.tied_film(), coarse.start(smooth)
+        if tied is not None and x_loop is not None:
+            found = search(other, tied.shape(x_loop), None, load, max_iterations, shown)
+            if found is not None and other.classified(found).converged:
+                smooth = coarse.smooth(found.shape.x_loop)
+    return smooth
 
 
 def _models(problem: Problem, film: FilmOfLoop, load: float) -> Models:

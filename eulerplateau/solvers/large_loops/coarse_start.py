@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film import Stiffness
 from eulerplateau.loop import (
     Bending,
@@ -35,9 +35,11 @@ class CoarseLoop:
     Attributes
     ----------
     loop : its edges' lengths
+    kept : (n_c,) int, places of its vertices in the fine one
     """
 
     loop: Loop
+    kept: IntArray
     _fine: Loop
     _arc: FloatArray
     _nodes: FloatArray
@@ -87,7 +89,7 @@ def coarsen(fine: Loop, n_c: int) -> CoarseLoop:
     share = (arc[:-1] - nodes[behind]) / loop.rest_lengths[behind]
     hats[vertices, behind] = 1 - share
     hats[vertices, (behind + 1) % n_c] += share
-    return CoarseLoop(loop, fine, arc[:-1], nodes, hats)
+    return CoarseLoop(loop, kept[:-1], fine, arc[:-1], nodes, hats)
 
 
 def is_rough(energy: Term | LoopEnergy, x: FloatArray, smooth: FloatArray) -> bool:

@@ -48,7 +48,7 @@ _NEAR = 1e-3
 _REWEIGHTINGS = 6
 
 # How many vertices a film may come to where it is refined, over those of its mesh.
-_MOST = 2
+_MOST = 3
 
 
 @dataclass(frozen=True, repr=False)
@@ -75,14 +75,18 @@ class AreaFilm:
         """Number of vertices of its mesh; shapes have as many, or more where refined."""
         return len(self.loop) + len(self.interior)
 
-    def tiling(self, triangles: IntArray) -> Tiling:
-        """Return the tiling by these triangles (n_t, 3), its pattern kept for later."""
+    def tiling(self, triangles: IntArray, loop: IntArray | None = None) -> Tiling:
+        """Return the tiling by these triangles (n_t, 3), its pattern kept for later.
+
+        loop : (m,) int, that which bounds them, where it may be finer than the mesh's
+        """
         for known in self._tilings:
             if known.triangles is triangles or np.array_equal(known.triangles, triangles):
                 return known
-        more = np.arange(self.n_v, int(triangles.max()) + 1)
-        inside = np.concatenate([self.interior, more]) if len(more) else self.interior
-        return self._keep(Tiling(triangles, self.loop, inside))
+        n_v, loop = int(triangles.max()) + 1, self.loop if loop is None else loop
+        finer = n_v > self.n_v
+        inside = np.setdiff1d(np.arange(n_v), loop) if finer else self.interior
+        return self._keep(Tiling(triangles, loop, inside))
 
     def _keep(self, tiling: Tiling) -> Tiling:
         if all(known is not tiling for known in self._tilings):
@@ -91,7 +95,7 @@ class AreaFilm:
 
     def on(self, tiling: Tiling, x: FloatArray) -> Shape:
         """Return the shape of vertices x (n_v, 3) on a tiling, kept for later."""
-        return Shape(x, self._keep(tiling).triangles, self.loop)
+        return Shape(x, self._keep(tiling).triangles, tiling.loop)
 
     @property
     def dimension(self) -> int:
@@ -100,17 +104,17 @@ class AreaFilm:
 
     def energy_gradient(self, shape: Shape, load: float) -> tuple[float, FloatArray]:
         """Return load * area and its gradient (n_v, 3)."""
-        tiling = self.tiling(shape.triangles)
+        tiling = self.tiling(shape.triangles, shape.loop)
         sides = tiling.sides(shape.x)
         return load * float(sides.areas.sum()), load * tiling.gradient(sides)
 
     def forces(self, shape: Shape) -> FloatArray:
         """Return the forces (n_v, 3) of unit load that do work (harmonic.balance)."""
-        return balance(self.tiling(shape.triangles), shape.x)
+        return balance(self.tiling(shape.triangles, shape.loop), shape.x)
 
     def prepared(self, shape: Shape) -> Shape:
         """Return the shape brought near to rest, folds and thin triangles replaced."""
-        tiling, x = self.tiling(shape.triangles), shape.x
+        tiling, x = self.tiling(shape.triangles, shape.loop), shape.x
         if is_folded(tiling, x):
             tiling, x = laid_anew(tiling, x)
         if tiling.sides(x).smallest_angle < LIMITS.thin:
@@ -119,15 +123,23 @@ class AreaFilm:
 
     def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
         """Return the shape after its loop has moved, repaired where triangles got thin."""
-        tiling = self.tiling(shape.triangles)
+        tiling = self.tiling(shape.triangles, shape.loop)
         return self.on(*carry_along(tiling, shape.x, x_loop))
 
-    def refined(self, shape: Shape, places: FloatArray, finest: float) -> Shape:
+    def refined(
+        self,
+        shape: Shape,
+        places: FloatArray,
+        finest: float,
+        parts: IntArray,
+        x_loop: FloatArray,
+    ) -> Shape:
         """Return the shape with finer triangles near places; itself if they are fine."""
-        from eulerplateau.film.refinement import EdgeSizes, refined
+        from eulerplateau.film.refinement import EdgeSizes, refined, with_cut_loop
 
-        tiling = self.tiling(shape.triangles)
-        finer, x = refined(tiling, shape.x, EdgeSizes(places, finest), _MOST * self.n_v)
+        tiling = self.tiling(shape.triangles, shape.loop)
+        cut = with_cut_loop(tiling, shape.x, parts, x_loop)
+        finer, x = refined(*cut, EdgeSizes(places, finest), _MOST * self.n_v)
         return shape if finer is tiling else self.on(finer, x)
 
     def of_loop(self, near: Shape) -> AreaOfLoop:
@@ -135,7 +147,7 @@ class AreaFilm:
         for known in self._recent:
             if known.local.tiling.triangles is near.triangles and known.rests_at(near.x):
                 return known
-        return self._near(self.tiling(near.triangles), near.x)
+        return self._near(self.tiling(near.triangles, near.loop), near.x)
 
     def _near(self, tiling: Tiling, x: FloatArray) -> AreaOfLoop:
         found = AreaOfLoop(self, local_film(self._keep(tiling), x))
@@ -152,7 +164,7 @@ class AreaFilm:
 
     def folded(self, shape: Shape) -> bool:
         """Return whether triangles lie on each other, and count what they do not span."""
-        return is_folded(self.tiling(shape.triangles), shape.x)
+        return is_folded(self.tiling(shape.triangles, shape.loop), shape.x)
 
     def touches(self, shape: Shape, diameter: float) -> bool:
         """Return whether the film comes against a rod so thick, or against itself."""
@@ -171,7 +183,7 @@ class AreaOfLoop:
     @property
     def reference(self) -> Shape:
         """The shape it was made at."""
-        return Shape(self.local.x, self.local.tiling.triangles, self.film.loop)
+        return Shape(self.local.x, self.local.tiling.triangles, self.local.tiling.loop)
 
     def rests_at(self, x: FloatArray) -> bool:
         """Return whether it was made at these very vertices, or rests at them there."""
@@ -188,7 +200,7 @@ class AreaOfLoop:
     def shape(self, x_loop: FloatArray) -> Shape:
         """Return the film at rest on a loop (n_b, 3)."""
         found = self.local.relax(x_loop)
-        return Shape(found.x, self.local.tiling.triangles, self.film.loop)
+        return Shape(found.x, self.local.tiling.triangles, self.local.tiling.loop)
 
     def force(self, x_loop: FloatArray) -> FloatArray:
         """Return the gradient of the area with respect to the loop (n_b, 3)."""

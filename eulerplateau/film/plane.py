@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.errors import MeshError
 from eulerplateau.film.area import AreaFilm
 from eulerplateau.film.folds import is_folded, laid_anew
@@ -80,7 +80,14 @@ class PlaneFilm:
         """Return the shape after its loop has moved to x_loop (n_b, 3)."""
         return self.soap.carried(shape, x_loop)
 
-    def refined(self, shape: Shape, places: FloatArray, finest: float) -> Shape:
+    def refined(
+        self,
+        shape: Shape,
+        places: FloatArray,
+        finest: float,
+        parts: IntArray,
+        x_loop: FloatArray,
+    ) -> Shape:
         """Return the shape as it is: its triangles are only looked at."""
         return shape
 

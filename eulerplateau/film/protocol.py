@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film.load import Load
 from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.mesh import Shape
@@ -46,11 +46,20 @@ class Film(Protocol):
     def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
         """Return the shape after its loop has moved to x_loop (n_b, 3)."""
 
-    def refined(self, shape: Shape, places: FloatArray, finest: float) -> Shape:
+    def refined(
+        self,
+        shape: Shape,
+        places: FloatArray,
+        finest: float,
+        parts: IntArray,
+        x_loop: FloatArray,
+    ) -> Shape:
         """Return the shape with edges inside no longer than `finest` near places (k, 3).
 
-        Away from these in proportion. Itself where it is nearly as fine, and of films that
-        are tied to their mesh, or for which triangles are no matter.
+        Away from these in proportion. Each edge of the loop is cut into parts (n_b,), and
+        the finer loop's vertices lie at x_loop (m, 3). The shape itself where it is nearly
+        as fine, and of films that are tied to their mesh, or for which triangles are no
+        matter.
         """
 
     def of_loop(self, near: Shape) -> FilmOfLoop:

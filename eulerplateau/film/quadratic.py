@@ -90,7 +90,14 @@ class QuadraticFilm:
         """Return the film at rest on a loop (n_b, 3)."""
         return self._eliminated.shape(x_loop)
 
-    def refined(self, shape: Shape, places: FloatArray, finest: float) -> Shape:
+    def refined(
+        self,
+        shape: Shape,
+        places: FloatArray,
+        finest: float,
+        parts: IntArray,
+        x_loop: FloatArray,
+    ) -> Shape:
         """Return the shape as it is: the mesh is what the film is made of."""
         return shape
 

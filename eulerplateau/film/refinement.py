@@ -1,8 +1,8 @@
 """Finer triangles inside a soap film near places where strands of its loop cross.
 
 There the film is a helicoid as narrow as the strands are apart, and elsewhere nearly flat.
-The loop's edges stay as they are: how far apart strands are is known of the smooth curve
-through their ends (loop/strands.py), however long they are.
+Along a strand its normal turns by a right angle over about that width: triangles that end on
+longer edges of the loop are thin or cannot follow, so that these are cut there as well.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from eulerplateau.film.repair import mend_triangles
 from eulerplateau.film.tiling import Tiling
 
 # How long edges may be over their distance from the nearest place.
-_GROWTH = 0.35
+_GROWTH = 0.2
 # How long edges from the loop inwards may be over the loop's own, at the least: on one of
 # those shorter ones make thin triangles.
 _AT_LOOP = 0.4
@@ -46,7 +46,7 @@ def refined(
 ) -> tuple[Tiling, FloatArray]:
     """Return a film (n_v, 3) whose edges inside are as short as they should be.
 
-    Vertices are added behind those there are, up to `most` in all; the loop is untouched.
+    Vertices are added behind those there are, up to `most` in all; the loop stays.
     The film as it was if no edge is too long by a third.
     """
     edges = _Edges.of(tiling, x)
@@ -58,6 +58,47 @@ def refined(
             break
         tiling, x = mend_triangles(*halved)
     return tiling, x
+
+
+def with_cut_loop(
+    tiling: Tiling, x: FloatArray, parts: IntArray, x_loop: FloatArray
+) -> tuple[Tiling, FloatArray]:
+    """Return a film (n_v, 3) each of whose loop's edges is cut into parts (n_b,).
+
+    x_loop : (m, 3) float, where the vertices of the finer loop are, m the sum of the parts
+
+    Vertices are added behind those there are. The film as it was if all parts are 1.
+    """
+    if len(x_loop) == len(parts):
+        return tiling, x
+    ends = np.column_stack([tiling.loop, np.roll(tiling.loop, -1)])
+    edge = np.repeat(np.arange(len(parts)), parts)
+    added = np.diff(edge, prepend=-1) == 0
+    loop = np.empty_like(edge)
+    loop[~added] = tiling.loop
+    loop[added] = tiling.n_v + np.arange(added.sum())
+    triangles, left = tiling.triangles, np.flatnonzero(parts > 1)
+    while len(left):
+        side = _sides_at(triangles, ends[left])
+        # A triangle in a corner has two edges of the loop: one after the other is cut.
+        triangle, first = np.unique(side // 3, return_index=True)
+        apex = np.zeros_like(parts)
+        apex[left[first]] = triangles[triangle, (side[first] + 2) % 3]
+        now = np.isin(edge, left[first])
+        fan = np.column_stack([loop, np.roll(loop, -1), apex[edge]])[now]
+        triangles = np.concatenate([np.delete(triangles, triangle, axis=0), fan])
+        left = np.delete(left, first)
+    inside = np.setdiff1d(np.arange(tiling.n_v), loop)
+    return mend_triangles(Tiling(triangles, loop, inside), np.vstack([x, x_loop[added]]))
+
+
+def _sides_at(triangles: IntArray, ends: IntArray) -> IntArray:
+    """Return which sides of triangles, 3 t + j, lead from one vertex to another (k, 2)."""
+    n_v = int(triangles.max()) + 1
+    number = (triangles * n_v + np.roll(triangles, -1, axis=1)).ravel()
+    order = np.argsort(number)
+    side: IntArray = order[np.searchsorted(number, ends @ (n_v, 1), sorter=order)]
+    return side
 
 
 @dataclass(frozen=True)
@@ -95,15 +136,14 @@ class _Edges:
         one, other = x[first // tiling.n_v], x[first % tiling.n_v]
         loop = x[tiling.loop]
         chords = np.linalg.norm(np.roll(loop, -1, axis=0) - loop, axis=1)
-        on_loop = np.zeros(tiling.n_v, dtype=bool)
-        on_loop[tiling.loop] = True
-        touches = on_loop[first // tiling.n_v] | on_loop[first % tiling.n_v]
+        least = np.zeros(tiling.n_v)
+        least[tiling.loop] = _AT_LOOP * 0.5 * (chords + np.roll(chords, 1))
         return cls(
             place.reshape(corners.shape),
             0.5 * (one + other),
             np.linalg.norm(one - other, axis=1),
             count == 2,
-            np.where(touches, _AT_LOOP * chords.mean(), 0.0),
+            np.maximum(least[first // tiling.n_v], least[first % tiling.n_v]),
         )
 
 

@@ -222,6 +222,11 @@ class CurvedRod(OwnTerm):
                 return framed.rate_of_curvature(frame, 2 * math.pi / framed.length)
         return None
 
+    def on_edges(self, rest_lengths: FloatArray) -> CurvedRod:
+        """Return the rod with other edges, so long (n,); of its frames none is known."""
+        loop = replace(self.loop, rest_lengths=rest_lengths)
+        return replace(self, loop=loop, _known=[], _near=())
+
     def with_value(self, parameter: str, value: float) -> CurvedRod:
         """Return the rod with another value of a parameter; itself if it has none such."""
         names = {"link": "link", "twist_ratio": "ratio", "rest_curvature": "curvature"}

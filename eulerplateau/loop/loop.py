@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from eulerplateau.arrays import FloatArray, cross
+from eulerplateau.arrays import FloatArray, IntArray, cross
 from eulerplateau.loop.term import OwnTerm
 
 # Edges in which a resolved loop can turn back on itself.
@@ -29,6 +29,8 @@ class Loop:
     rest_lengths: FloatArray
     terms: Mapping[str, OwnTerm] = field(default_factory=dict)
     diameter: float | None = None
+    # The same loop with edges cut into parts, as it last was.
+    _finer: list[Loop] = field(default_factory=list, init=False, repr=False, compare=False)
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -45,7 +47,21 @@ class Loop:
             object.__setattr__(made, "diameter", value)
         own = {name: term.with_value(parameter, value) for name, term in terms}
         object.__setattr__(made, "terms", own)
+        finer = [known.with_value(parameter, value) for known in self._finer]
+        object.__setattr__(made, "_finer", finer)
         return made
+
+    def cut(self, parts: IntArray) -> Loop:
+        """Return the same loop, each of its edges cut into so many equal parts (n_b,)."""
+        if parts.max() == 1:
+            return self
+        lengths = np.repeat(self.rest_lengths / parts, parts)
+        for known in self._finer:
+            if np.array_equal(known.rest_lengths, lengths):
+                return known
+        terms = {name: term.on_edges(lengths) for name, term in self.terms.items()}
+        self._finer[:] = [replace(self, rest_lengths=lengths, terms=terms)]
+        return self._finer[0]
 
     def pinched(self, x: FloatArray) -> bool:
         """Return whether a loop (n, d) meets itself where that ends what a term says."""

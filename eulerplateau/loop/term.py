@@ -106,6 +106,10 @@ class OwnTerm(Term):
         """Return the term at another value of a parameter; itself if it has no such one."""
 
     @abstractmethod
+    def on_edges(self, rest_lengths: FloatArray) -> OwnTerm:
+        """Return the term of the same loop with other edges, so long (n,)."""
+
+    @abstractmethod
     def energy(self, x: FloatArray) -> float:
         """Return the energy of a loop (n, 3)."""
 

@@ -114,6 +114,10 @@ class Twist(EvenTwist, OwnTerm):
             return replace(self, link=value)
         return replace(self, ratio=value) if parameter == "twist_ratio" else self
 
+    def on_edges(self, rest_lengths: FloatArray) -> Twist:
+        """Return the twist of the same loop with other edges, so long (n,)."""
+        return replace(self, loop=replace(self.loop, rest_lengths=rest_lengths), _known=[])
+
     @property
     def rounding(self) -> float:
         """What rounding alone leaves of the force, per unit of position."""

@@ -117,6 +117,27 @@ class Disk:
             x[interior] = -splu(rows[:, interior].tocsc()).solve(pull)
         return replace(self, x=x, triangles=triangles)
 
+    def parts(self, loop: IntArray) -> IntArray:
+        """Return into how many equal parts each loop edge (n_b,) is cut in a finer loop.
+
+        loop : (m,) int, this mesh's vertices among others, whose numbers are beyond these
+        """
+        parts: IntArray = np.diff(np.flatnonzero(loop < self.n_v), append=len(loop))
+        return parts
+
+    def with_loop(self, loop: IntArray) -> Disk:
+        """Return the mesh on a finer loop (m,), of which it has no triangles yet."""
+        if len(loop) == self.n_b:
+            return self
+        parts, start = self.parts(loop), self.x[self.loop]
+        step = (np.roll(start, -1, axis=0) - start) / parts[:, None]
+        past = np.arange(len(loop)) - np.repeat(np.cumsum(parts) - parts, parts)
+        x = np.zeros((int(loop.max()) + 1, 3))
+        x[loop] = np.repeat(start, parts, axis=0)
+        x[loop] += past[:, None] * np.repeat(step, parts, axis=0)
+        rest_lengths = np.repeat(self.rest_lengths / parts, parts)
+        return replace(self, x=x, loop=loop, rest_lengths=rest_lengths)
+
     @property
     def n_v(self) -> int:
         """Number of vertices."""

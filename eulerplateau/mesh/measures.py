@@ -58,13 +58,13 @@ class Measurer:
     """
 
     def __init__(self, disk: Disk) -> None:
-        self._disk = disk
+        self._rest = self._disk = disk
         self._path = waist_path(disk)
 
     def disk_of(self, shape: Shape) -> Disk:
-        """Return the disk with a shape's triangles."""
+        """Return the disk with a shape's loop and triangles."""
         if shape.triangles is not self._disk.triangles:
-            self._disk = self._disk.with_triangles(shape.triangles)
+            self._disk = self._rest.with_loop(shape.loop).with_triangles(shape.triangles)
             self._path = waist_path(self._disk)
         return self._disk
 

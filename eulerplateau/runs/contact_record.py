@@ -47,7 +47,7 @@ def _on_loop(problem: Problem, found: Equilibrium) -> FloatArray:
     one, other = contacts.points
     across = one - other
     across /= np.linalg.norm(across, axis=1)[:, None]
-    along = np.concatenate([[0.0], np.cumsum(problem.loop.rest_lengths)])
+    along = np.concatenate([[0.0], np.cumsum(problem.loop_of(shape).rest_lengths)])
     middles = 0.5 * (along[1:] + along[:-1])
     pushes = contacts.forces[:, None] * across
     for places, push in (contacts.s, pushes), (contacts.t, -pushes):

@@ -66,14 +66,14 @@ class StoredShape(Shape):
 
 @dataclass(frozen=True)
 class ShapeSequence:
-    """The shapes of a run, on one set of vertices with one loop.
+    """The shapes of a run, on one set of vertices.
 
     Attributes
     ----------
     x : (n, n_v, 3) float, lengths in units of L
         As many vertices as the largest has; those behind a smaller one's belong to none of
         its triangles, and lie where its last one does.
-    loop : (n_b,) int, cyclic
+    loop : (n_b,) int, cyclic: the vertices that the loops of all of them have
     tilings : where triangles change: the shape from which on, and (n_t, 3) int
         The first is from shape 0 on; only a soap film that was repaired has others.
     """
@@ -218,9 +218,11 @@ def read_shapes(paths: Sequence[Path]) -> ShapeSequence:
     """Read the shapes of a run, at least one.
 
     Raises OutputError naming the file that cannot be read, is of another mesh at rest than
-    the first or has another loop, or positions that are not finite.
+    the first or, if they do not say of which, has another loop, or positions that are not
+    finite.
     """
     x: list[FloatArray] = []
+    loops: list[IntArray] = []
     tilings: list[tuple[int, IntArray]] = []
     first: VtpFile | None = None
     for path in paths:
@@ -233,20 +235,22 @@ def read_shapes(paths: Sequence[Path]) -> ShapeSequence:
         if not np.isfinite(shape.points).all():
             raise OutputError(path, "has positions that are not finite")
         x.append(shape.points)
+        loops.append(shape.lines[0][:-1])
     assert first is not None  # there are paths
     most = max(len(points) for points in x)
     full = [np.pad(points, ((0, most - len(points)), (0, 0)), "edge") for points in x]
-    return ShapeSequence(np.array(full), first.lines[0][:-1], tuple(tilings))
+    shared = [vertex for vertex in loops[0] if all(vertex in loop for loop in loops)]
+    return ShapeSequence(np.array(full), np.array(shared), tuple(tilings))
 
 
 def _of_one_mesh(first: VtpFile, other: VtpFile) -> bool:
-    """Return whether two shapes have one loop and, but for refinement, one mesh."""
-    if not np.array_equal(first.lines[0], other.lines[0]):
-        return False
+    """Return whether two shapes have, but for refinement, one mesh."""
     none = np.empty(0)
     one, another = (shape.field_data.get(_REST_MESH, none) for shape in (first, other))
-    refined = len(one) > 0 and np.array_equal(one, another)
-    return refined or len(first.points) == len(other.points)
+    if len(one) and np.array_equal(one, another):
+        return True
+    same = np.array_equal(first.lines[0], other.lines[0])
+    return same and len(first.points) == len(other.points)
 
 
 def _read(path: Path, of_its_row: tuple[str, ...]) -> VtpFile:

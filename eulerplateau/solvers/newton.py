@@ -92,14 +92,14 @@ def lowest_modes(problem: Problem, found: Equilibrium, count: int) -> dict[str, 
     The film follows the loop; the largest displacement is 1. On large loops as many modes
     are known as are unstable or neutral, and one more.
     """
-    film = problem.film.of_loop(found.shape)
-    energy = film.energy(problem.loop, found.load)
+    film, loop = problem.film.of_loop(found.shape), problem.loop_of(found.shape)
+    energy = film.energy(loop, found.load)
     if found.contacts is None:
-        models = models_for(problem.film, problem.loop, energy)
+        models = models_for(problem.film, loop, energy)
     else:
         from eulerplateau.loop import strands_of, with_gaps_held
 
-        strands, places = strands_of(problem.loop), found.contacts.places
+        strands, places = strands_of(loop), found.contacts.places
         models = DenseModels(with_gaps_held(energy, strands, places))
     x_loop = film.project(found.shape.x_loop)
     model = models.at(x_loop).dense

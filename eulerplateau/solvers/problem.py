@@ -138,20 +138,24 @@ class Problem:
         except (MeshError, LinAlgError):
             return None
 
+    def loop_of(self, shape: Shape) -> Loop:
+        """Return the loop of a shape, which is finer where its film was refined."""
+        return self.loop.cut(self.disk.parts(shape.loop))
+
     def bending_energy(self, shape: Shape) -> tuple[float, FloatArray]:
         """Return the loop's bending energy and its gradient (n_v, 3)."""
-        loop, x = self.loop, shape.x_loop
+        loop, x = self.loop_of(shape), shape.x_loop
         return loop.bending_energy(x), self.on_loop(shape, loop.bending_force(x))
 
     def energy(self, shape: Shape, load: float) -> float:
         """Return the energy of film and loop together."""
         film, bending = self.film.energy_gradient(shape, load), self.bending_energy(shape)
-        terms = self.loop.terms.values()
+        terms = self.loop_of(shape).terms.values()
         return film[0] + bending[0] + sum(term.energy(shape.x_loop) for term in terms)
 
     def loop_forces(self, shape: Shape) -> list[FloatArray]:
         """Return the gradient (n_v, 3) of what the loop's energy has beside its bending."""
-        terms = self.loop.terms.values()
+        terms = self.loop_of(shape).terms.values()
         return [self.on_loop(shape, term.force(shape.x_loop)) for term in terms]
 
     def said_of_loop(self, shape: Shape) -> tuple[dict[str, float], dict[str, FloatArray]]:
@@ -161,7 +165,7 @@ class Problem:
         """
         columns: dict[str, float] = {}
         fields: dict[str, FloatArray] = {}
-        for term in self.loop.terms.values():
+        for term in self.loop_of(shape).terms.values():
             columns |= term.columns(shape.x_loop)
             for name, on_loop in term.fields(shape.x_loop).items():
                 fields[name] = np.full_like(shape.x, np.nan)
@@ -176,7 +180,9 @@ class Problem:
 
     def tension_force(self, shape: Shape, tensions: FloatArray) -> FloatArray:
         """Return J^T lambda (n_v, 3) for the tensions lambda (n_b,) of the loop's edges."""
-        return self.on_loop(shape, self.loop.tension_force(shape.x_loop, tensions))
+        return self.on_loop(
+            shape, self.loop_of(shape).tension_force(shape.x_loop, tensions)
+        )
 
     def residual(
         self,
@@ -209,20 +215,22 @@ class Problem:
 
         Films of fixed weights are tied to their rest mesh: their forces stay as they are.
         """
-        slide = self.film.slide(self.loop, shape.x_loop)
+        loop = self.loop_of(shape)
+        slide = self.film.slide(loop, shape.x_loop)
         if slide is None:
             return forces
         rest = forces.copy()
-        rest[shape.loop] = remove_sliding(slide, self.loop, forces[shape.loop])
+        rest[shape.loop] = remove_sliding(slide, loop, forces[shape.loop])
         return rest
 
     def length_error(self, shape: Shape) -> float:
         """Return max |l_v / s_v - 1| over the loop's edges."""
-        return self.loop.length_error(shape.x_loop)
+        return self.loop_of(shape).length_error(shape.x_loop)
 
     def pinched(self, shape: Shape) -> bool:
         """Return whether strands meet where there is no film, or no loop, beyond that."""
-        return self.loop.pinched(shape.x_loop) or self.film.pinched(shape, self.loop)
+        loop = self.loop_of(shape)
+        return loop.pinched(shape.x_loop) or self.film.pinched(shape, loop)
 
     def equilibrium(
         self,
@@ -234,7 +242,7 @@ class Problem:
     ) -> Equilibrium:
         """Record a shape with all its numbers computed on the full mesh."""
         film, pull = self.film.energy_gradient(shape, load)
-        bending, terms = self.bending_energy(shape)[0], self.loop.terms.items()
+        bending, terms = self.bending_energy(shape)[0], self.loop_of(shape).terms.items()
         loop = {name: term.energy(shape.x_loop) for name, term in terms}
         pulls = np.abs(pull).max(axis=1)
         inside, strongest = np.delete(pulls, shape.loop).max(initial=0.0), pulls.max()
@@ -285,7 +293,7 @@ class Problem:
         loop = found.status is not Status.NOT_FINITE and found.length_error < _CLOSED
         if loop and self.pinched(found.shape):
             return replace(found, status=Status.PINCHED)
-        if loop and self.loop.is_too_thick(found.shape.x_loop):
+        if loop and self.loop_of(found.shape).is_too_thick(found.shape.x_loop):
             return replace(found, status=Status.TOO_THICK)
         if not found.converged:
             return found

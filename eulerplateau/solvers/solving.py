@@ -77,7 +77,7 @@ def solve(
     """
     shape, known = _start(problem, start)
     if tensions is not None:
-        known = _tensions(problem, tensions)
+        known = _tensions(shape, tensions)
     minimise = _named(solver)
     _check_knows_contact(problem, solver)
     show = (lambda x_loop: None) if observe is None else observe
@@ -138,7 +138,7 @@ def follow_steps(
     """
     shape, known = _start(problem, start)
     if tensions is not None:
-        known = _tensions(problem, tensions)
+        known = _tensions(shape, tensions)
     _check_knows_contact(problem, solver)
     return _swept(steps, shape, known, _named(solver), _limit(max_iterations))
 
@@ -195,7 +195,9 @@ def _start(problem: Problem, start: Start | None) -> tuple[Shape, FloatArray | N
     if start is None:
         return problem.shape(displaced(problem.disk, 1e-3, 1)), None
     if isinstance(start, Equilibrium):
-        return _fitting(problem, start.shape), start.tensions
+        shape = _fitting(problem, start.shape)
+        same = len(shape.loop) == len(start.tensions)
+        return shape, start.tensions if same else None
     if isinstance(start, Shape):
         return _fitting(problem, start), None
     return problem.shape(start), None
@@ -203,19 +205,19 @@ def _start(problem: Problem, start: Start | None) -> tuple[Shape, FloatArray | N
 
 def _fitting(problem: Problem, shape: Shape) -> Shape:
     """Return a shape the problem can begin with, or raise SpecError."""
-    if not np.array_equal(shape.loop, problem.disk.loop):
+    if not np.array_equal(shape.loop[shape.loop < problem.disk.n_v], problem.disk.loop):
         raise SpecError("start", "has another loop than the problem's disk: is it its own?")
     if shape.x.shape == problem.disk.x.shape:
         return shape
     if len(shape.x) < problem.disk.n_v:
         return problem.shape(shape.x)
-    return shape if problem.refines else coarse(problem.tied_film(), shape)
+    return shape if problem.refines else coarse(problem.tied_film(), problem.disk, shape)
 
 
-def _tensions(problem: Problem, tensions: ArrayLike) -> FloatArray:
+def _tensions(shape: Shape, tensions: ArrayLike) -> FloatArray:
     found = np.asarray(tensions, dtype=np.float64)
-    if found.shape != problem.disk.loop.shape:
-        n_b = len(problem.disk.loop)
+    if found.shape != shape.loop.shape:
+        n_b = len(shape.loop)
         raise SpecError("tensions", f"have shape {found.shape}; should be ({n_b},)")
     return found
 

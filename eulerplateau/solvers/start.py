@@ -39,12 +39,12 @@ def displaced(mesh: Disk, displacement: float, seed: int) -> FloatArray:
     return mesh.x + np.outer(displacement * noise, across)
 
 
-def coarse(tied: FilmOfLoop | None, shape: Shape) -> Shape:
-    """Return a shape that was refined on the vertices of its mesh, across the same loop.
+def coarse(tied: FilmOfLoop | None, mesh: Disk, shape: Shape) -> Shape:
+    """Return a shape that was refined on the vertices of its mesh and across its loop.
 
     By a film tied to the mesh at rest, whose triangles it has then. Raises SpecError where
     there is none.
     """
     if tied is None:
         raise SpecError("start", "has other vertices than the mesh, which spans no film")
-    return tied.shape(shape.x_loop)
+    return tied.shape(shape.x[mesh.loop])

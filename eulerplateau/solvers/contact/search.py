@@ -8,9 +8,10 @@ from dataclasses import replace
 from functools import partial
 from math import isinf
 
+import numpy as np
 from scipy.linalg import LinAlgError
 
-from eulerplateau.arrays import FloatArray
+from eulerplateau.arrays import FloatArray, IntArray
 from eulerplateau.film import FilmOfLoop
 from eulerplateau.loop import LoopEnergy, Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
@@ -27,10 +28,13 @@ from eulerplateau.solvers.second_variation import stability
 from eulerplateau.solvers.start import coarse
 from eulerplateau.threads import one_thread
 
-# How long edges of the film may be where strands cross: in diameters; or in edges of the
-# loop if that is more, since triangles that join these are thin if they are finer.
-_OF_DIAMETER = 1 / 2
-_OF_LOOP = 1 / 3
+# How long edges may be where strands cross. Those of the loop: in diameters, but in units of
+# L so long that rounding leaves what an equilibrium must meet; farther away in proportion.
+_LOOP_OF_DIAMETER, _LOOP_LEAST, _LOOP_GROWTH = 1.5, 1.5e-3, 0.35
+# By how much they are too long where they are cut.
+_SLACK = 1.3
+# Those of the film: in diameters, or in edges of the loop there if that is more.
+_OF_DIAMETER, _OF_LOOP = 1 / 4, 1 / 5
 # A film is refined once in one solve, and laid on its mesh again where its strands part.
 _TIMES = 2
 
@@ -45,31 +49,56 @@ def search(
 ) -> Equilibrium | None:
     """Return what a film comes to; None if no loop without overlaps is near the start.
 
-    Tensions are of no use: they follow from the loop.
+    It is as fine as its contacts need it, and where strands have parted that of the mesh
+    again; what has not converged is as it was, and what has, if a film that is finer has
+    not. Tensions are of no use: they follow from the loop.
     """
-    strands = strands_of(problem.loop)
+    more = load, max_iterations, observe
+    with one_thread():
+        found = _found(problem, start, *more)
+        if _is_lost(found) and len(start.x) > problem.disk.n_v:
+            start = coarse(problem.tied_film(), problem.disk, start)
+            found = _found(problem, start, *more)
+        for _ in range(_TIMES if problem.refines else 0):
+            if found is None or not found.converged:
+                break
+            shape, spent = _fit(problem, found), found.iterations
+            if shape is found.shape:
+                break
+            other = _found(problem, shape, load, max_iterations - spent, observe)
+            if other is None or not other.converged:
+                break
+            found = replace(other, iterations=spent + other.iterations)
+        return found
+
+
+def _is_lost(found: Equilibrium | None) -> bool:
+    return found is None or found.status is Status.STALLED
+
+
+def _found(
+    problem: Problem,
+    start: Shape,
+    load: float,
+    max_iterations: int,
+    observe: Callable[[FloatArray], None],
+) -> Equilibrium | None:
+    """Return what a film on the loop of a shape comes to."""
+    strands = strands_of(problem.loop_of(start))
     film = problem.film.of_loop(start)
-    x_loop = close_with_lengths(problem.loop, film.project(start.x_loop))
+    x_loop = close_with_lengths(strands.loop, film.project(start.x_loop))
     if x_loop is None:
         return None
     x_loop = separated(strands, x_loop)
     if x_loop is None:
         return None
-    with one_thread():
-        lifted = film.lift(x_loop)
-        more = load, max_iterations, observe
-        found = _near(problem, strands, start, lifted, x_loop, *more)
-        lost = found is None or found.status is Status.STALLED
-        if lost and problem.film.dimension != 2:
-            other = _from_tied(problem, strands, x_loop, *more)
-            if found is None or _is_better(problem, start, x_loop, load, other):
-                found = other
-
-        def again(shape: Shape, spent: int) -> Equilibrium | None:
-            x, left = film.project(shape.x_loop), max_iterations - spent
-            return _near(problem, strands, shape, film.lift(x), x, load, left, observe)
-
-        return _resolved(problem, found, again)
+    more = load, max_iterations, observe
+    found = _near(problem, strands, start, film.lift(x_loop), x_loop, *more)
+    if _is_lost(found) and problem.film.dimension != 2:
+        other = _from_tied(problem, strands, x_loop, *more)
+        if found is None or _is_better(problem, start, x_loop, load, other):
+            found = other
+    return found
 
 
 def _is_better(
@@ -100,12 +129,13 @@ def _from_tied(
 ) -> Equilibrium | None:
     """Return what a film comes to from where one goes that is tied to its mesh.
 
-    That can be spanned across any loop. None if there is none even then.
+    That can be spanned across any loop with the mesh's edges. None if there is none even
+    then.
     """
     tied = problem.tied_film()
-    if tied is None:
+    if tied is None or len(x_loop) != problem.disk.n_b:
         return None
-    energy = tied.energy(problem.loop, load)
+    energy = tied.energy(strands.loop, load)
     try:
         last = Everywhere(energy, strands, at_rounding)
         descent = ContactDescent(energy, strands, max_iterations, last=last)
@@ -134,7 +164,7 @@ def _near(
 
     def descend(film: FilmOfLoop, left: int) -> Reached:
         nonlocal state, x_loop
-        energy = film.energy(problem.loop, load)
+        energy = film.energy(strands.loop, load)
         ends = partial(elsewhere, film)
         last = Everywhere(energy, strands, at_rounding)
         descent = ContactDescent(energy, strands, left, observe, ends, last)
@@ -164,7 +194,7 @@ def _record(
     spent: int,
     status: Status,
 ) -> Equilibrium:
-    energy = film.energy(problem.loop, load)
+    energy = film.energy(strands.loop, load)
     if status is not Status.CONVERGED:
         state = _apart(strands, energy, state)
         shape = film.shape(state.model.x)
@@ -195,45 +225,41 @@ def _apart(strands: Strands, energy: LoopEnergy, state: Touching) -> Touching:
     return state
 
 
-def _resolved(
-    problem: Problem,
-    found: Equilibrium | None,
-    again: Callable[[Shape, int], Equilibrium | None],
-) -> Equilibrium | None:
-    """Return what a film comes to where it is as fine as its contacts need it.
-
-    Where strands have parted it is that of the mesh again. What has not converged is
-    returned as it is; and what has, if the film with other triangles does not.
-
-    again : of a shape and the iterations spent, what the film comes to from there
-    """
-    for _ in range(_TIMES if problem.refines else 0):
-        if found is None or not found.converged:
-            break
-        shape = _fit(problem, found)
-        if shape is found.shape:
-            break
-        other = again(shape, found.iterations)
-        if other is None or not other.converged:
-            break
-        found = replace(other, iterations=found.iterations + other.iterations)
-    return found
-
-
 def _fit(problem: Problem, found: Equilibrium) -> Shape:
-    """Return the shape of an equilibrium with triangles as its contacts need them."""
+    """Return the shape of an equilibrium with edges as its contacts need them."""
     shape, contacts, diameter = found.shape, found.contacts, problem.loop.diameter
     assert contacts is not None
     assert diameter is not None
-    crossings = contacts.points.mean(axis=0)[contacts.at_a_point]
-    edges = float(problem.loop.rest_lengths.mean())
+    crossing = contacts.at_a_point
     # The mesh of a thicker line is fine enough.
-    if len(crossings) and diameter < edges:
-        finest = max(_OF_DIAMETER * diameter, _OF_LOOP * edges)
-        return problem.film.refined(shape, crossings, finest)
+    if crossing.any() and diameter < float(problem.loop.rest_lengths.mean()):
+        places = np.concatenate([contacts.s[crossing], contacts.t[crossing]])
+        parts = _parts(problem, shape, places, diameter)
+        loop = problem.loop_of(shape)
+        lengths = np.repeat(loop.rest_lengths / parts, parts)
+        finest = max(_OF_DIAMETER * diameter, _OF_LOOP * float(lengths.min()))
+        x_loop = strands_of(loop).curve(shape.x_loop)(np.cumsum(lengths) - lengths)
+        points = contacts.points.mean(axis=0)[crossing]
+        return problem.film.refined(shape, points, finest, parts, x_loop)
     parted = len(contacts) == 0 and isinf(contacts.smallest_gap)
     return (
-        coarse(problem.tied_film(), shape)
+        coarse(problem.tied_film(), problem.disk, shape)
         if parted and len(shape.x) > problem.disk.n_v
         else shape
     )
+
+
+def _parts(problem: Problem, shape: Shape, places: FloatArray, diameter: float) -> IntArray:
+    """Return into how many parts each edge of a shape's loop is to be cut: powers of 2.
+
+    Edges of the mesh are cut as wholes: how many parts each is in tells how long they are.
+    """
+    lengths, cut = problem.loop.rest_lengths, problem.disk.parts(shape.loop)
+    off = np.abs((np.cumsum(lengths) - 0.5 * lengths)[:, None] - places) % 1.0
+    away = np.minimum(off, 1.0 - off).min(axis=1)
+    finest = max(_LOOP_OF_DIAMETER * diameter, _LOOP_LEAST)
+    many = lengths / np.maximum(finest, _LOOP_GROWTH * away)
+    if (many <= _SLACK * cut).all():
+        return np.ones(len(shape.loop), dtype=np.int64)
+    wanted = 2 ** np.ceil(np.log2(np.maximum(many, 1.0))).astype(np.int64)
+    return np.repeat(np.maximum(wanted // cut, 1), cut)

@@ -51,6 +51,11 @@ class Loop:
         object.__setattr__(made, "_finer", finer)
         return made
 
+    def on_edges(self, rest_lengths: FloatArray) -> Loop:
+        """Return the same loop with other edges, so long (n,)."""
+        terms = {name: term.on_edges(rest_lengths) for name, term in self.terms.items()}
+        return replace(self, rest_lengths=rest_lengths, terms=terms)
+
     def cut(self, parts: IntArray) -> Loop:
         """Return the same loop, each of its edges cut into so many equal parts (n_b,)."""
         if parts.max() == 1:
@@ -59,8 +64,7 @@ class Loop:
         for known in self._finer:
             if np.array_equal(known.rest_lengths, lengths):
                 return known
-        terms = {name: term.on_edges(lengths) for name, term in self.terms.items()}
-        self._finer[:] = [replace(self, rest_lengths=lengths, terms=terms)]
+        self._finer[:] = [self.on_edges(lengths)]
         return self._finer[0]
 
     def pinched(self, x: FloatArray) -> bool:

@@ -99,16 +99,12 @@ class Problem:
         """Return the problem and its load at another value of one of these parameters."""
         if parameter == "load":
             return self, value
-        made = copy(self)
-        object.__setattr__(made, "loop", self.loop.with_value(parameter, value))
-        return made, load
+        return self.with_loop(self.loop.with_value(parameter, value)), load
 
-    def on(self, disk: Disk) -> Problem:
-        """Return the same problem of a soap film with another mesh."""
+    def with_loop(self, loop: Loop) -> Problem:
+        """Return the same film on another loop of as many edges."""
         made = copy(self)
-        object.__setattr__(made, "disk", disk)
-        object.__setattr__(made, "film", make_film(disk, "area"))
-        object.__setattr__(made, "loop", self.loop.on_edges(disk.rest_lengths))
+        object.__setattr__(made, "loop", loop)
         return made
 
     def shape(self, x: ArrayLike) -> Shape:

@@ -87,12 +87,15 @@ def _smooth_start(
         observe(coarse.prolong(x_loop))
 
     with suppress(MeshError, LinAlgError):
-        other = problem.on(coarse_disk(problem.disk, coarse))
+        disk = coarse_disk(problem.disk, coarse)
+        loop = problem.loop.on_edges(disk.rest_lengths)
+        other = Problem(disk, "area").with_loop(loop)
         tied, x_loop = other.tied_film(), coarse.start(smooth)
         if tied is not None and x_loop is not None:
             found = search(other, tied.shape(x_loop), None, load, max_iterations, shown)
             if found is not None and other.classified(found).converged:
-                smooth = coarse.smooth(found.shape.x_loop)
+                minimum = coarse.smooth(found.shape.x_loop)
+                return smooth if minimum is None else minimum
     return smooth
 
 

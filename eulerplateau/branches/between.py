@@ -9,10 +9,14 @@ from functools import partial
 import numpy as np
 
 from eulerplateau.branches.brent import zero_between
+from eulerplateau.branches.continuation import RECENTRINGS, recentred
 from eulerplateau.branches.control import Hyperplane, StepControl
+from eulerplateau.branches.family import Family
 from eulerplateau.branches.point import NOISE, BranchPoint, along, correct
 
 _PRECISION = 1e-14
+# Part of an interval about what has been located there in which it is located again.
+_ABOUT = 0.1
 _ROUNDING = 4 * float(np.finfo(np.float64).eps)
 
 
@@ -67,6 +71,41 @@ class Interval:
     def zero(self, index: int) -> BranchPoint | None:
         """Return the point where an eigenvalue that changes sign does so; None if lost."""
         return self.locate(partial(eigenvalue, index, 0.0))
+
+    def about(self, point: BranchPoint, family: Family) -> Interval | None:
+        """Return the part about a point, in a family made anew there; None if lost."""
+        ends = []
+        for end in (self.before, self.after):
+            x = point.x + _ABOUT * (end.x - point.x)
+            value = point.value + _ABOUT * (end.value - point.value)
+            found = correct(family, x, value, self.before.direction, self.control)
+            if found is None:
+                return None
+            arclength = point.arclength + _ABOUT * (end.arclength - point.arclength)
+            ends.append(replace(found, arclength=arclength))
+        before, after = ends
+        return Interval(before, after, self.control)
+
+    def at_rest(
+        self, locate: Callable[[Interval], BranchPoint | None]
+    ) -> tuple[Interval, BranchPoint] | None:
+        """Return what is located once forces balance there, and in which interval.
+
+        A film is good near one shape: where that is too far, what is located has moved a
+        little, and the film is made anew there. None if it is not located at all.
+        """
+        interval, point = self, locate(self)
+        for _ in range(RECENTRINGS):
+            if point is None or point.family.rests(point.model, point.value):
+                break
+            # At a bifurcation a point's own direction means nothing.
+            here = replace(point, direction=self.before.direction)
+            part = self.about(here, recentred(here, self.control).family)
+            again = None if part is None else locate(part)
+            if part is None or again is None:
+                break
+            interval, point = part, again
+        return None if point is None else (interval, point)
 
     def nearly_zero(self, index: int, level: float, tries: int) -> bool:
         """Whether an eigenvalue that changes sign is found at `level`, in so many tries."""

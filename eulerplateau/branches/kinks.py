@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from itertools import product
+from operator import methodcaller
 from typing import Protocol, cast
 
 import numpy as np
@@ -23,8 +24,9 @@ from eulerplateau.branches.point import BranchPoint, correct, point_on
 
 # Margins down to this are rounding's; and what rounding leaves of one.
 _ROUNDING, _MARGIN = 1e-9, 1e-12
-# Tries after which a margin is as near to zero as what strands overlap by lets it be.
-_TRIES = 16
+# Tries after which a margin is as near to zero as what strands overlap by lets it be; and
+# when it is located again near there, where it is all but linear.
+_TRIES, _AGAIN = 10, 6
 # Arclength below which a kink is the one a branch has just left; and those after which it
 # is looked at whether bounds are kept to: the next kink may be near.
 _LEFT = 1e-8
@@ -63,6 +65,7 @@ def kink_between(
     interval = Interval(before, there, control)
     found = [(_located(interval, int(which)), int(which)) for which in broken]
     point, which = min(found, key=lambda pair: pair[0].arclength)
+    interval, point = _again(interval, point, which)
     family, what = cast(BoundedFamily, point.family).beyond(point, which)
     on = _gone_on(point, family, control)
     return there, Kink(point, on, what, _error(interval, point, which))
@@ -71,6 +74,18 @@ def kink_between(
 def _located(interval: Interval, which: int) -> BranchPoint:
     found = interval.locate(partial(_margin, which), _TRIES)
     if found is None or found.arclength - interval.before.arclength < _LEFT:
+        raise LostError
+    return found
+
+
+def _again(
+    interval: Interval, point: BranchPoint, which: int
+) -> tuple[Interval, BranchPoint]:
+    """Return it located again, the film made anew there, and the part that was done in."""
+    part = interval.about(point, point.family.near(point.x))
+    locate = methodcaller("locate", partial(_margin, which), _AGAIN)
+    found = None if part is None else part.at_rest(locate)
+    if found is None:
         raise LostError
     return found
 

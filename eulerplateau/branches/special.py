@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import methodcaller
 
 import numpy as np
 
@@ -112,20 +113,20 @@ def special_points(
             yield found
         return
     located = [
-        (point, index)
+        (*crossed, index)
         for index in interval.crossing
-        if (point := interval.zero(index)) is not None
+        if (crossed := interval.at_rest(methodcaller("zero", index))) is not None
     ]
-    located.sort(key=lambda pair: pair[0].arclength)
+    located.sort(key=lambda each: each[1].arclength)
     last = None
-    for point, _ in located:
+    for within, point, _ in located:
         near = _TOGETHER * control.scale(point.value)
         # Symmetric loops lose several modes at once: one event, and one set of branches.
         if last is not None and abs(point.value - last) < near:
             continue
         last = point.value
-        together = [i for other, i in located if abs(other.value - last) < near]
-        found = _describe(interval, point, min(together), len(together))
+        together = [i for _, other, i in located if abs(other.value - last) < near]
+        found = _describe(within, point, min(together), len(together))
         # The eigenvalue of an all but free rotation wanders about zero: no event.
         if found.error < near:
             yield found
@@ -199,17 +200,17 @@ def _turn(interval: Interval) -> SpecialPoint | None:
         return None
     index = int(np.abs(near.stability.eigenvalues).argmin())
     if interval.crossing:
-        extreme = interval.locate(partial(parameter_rate, 0.0))
-        fold = None if extreme is None else _describe(interval, extreme, index, 1)
+        extreme = interval.at_rest(methodcaller("locate", partial(parameter_rate, 0.0)))
+        fold = None if extreme is None else _describe(*extreme, index, 1)
         return fold if fold is not None and fold.kind == FOLD else None
     other = _across(interval, near, index)
     if other is None or len(other.crossing) != 1:
         return None
     number = other.crossing[0]
-    point = other.zero(number)
-    if point is None:
+    crossing = other.at_rest(methodcaller("zero", number))
+    if crossing is None:
         return None
-    found = _describe(other, point, number, 1)
+    found = _describe(*crossing, number, 1)
     here = replace(found.point, arclength=_arclength_of_extreme(interval))
     return replace(found, point=here, arrived=True)
 

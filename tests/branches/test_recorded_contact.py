@@ -142,7 +142,7 @@ def test_energy_rises_with_the_diameter_by_the_force(edges: int) -> None:
 @pytest.mark.slow
 def test_saddles_of_an_exploration_are_recorded_without_overlaps() -> None:
     """Planar lobes in space, which twist: what is converged keeps to the laws."""
-    window, start = (3900.0, 4250.0), lobes(shapes.fan(60), 1850.0, 0.0, in_plane=False)
+    window, start = (3700.0, 4250.0), lobes(shapes.fan(60), 1850.0, 0.0, in_plane=False)
     up = (at.point for at in places(start, 30))
     first = next(point for point in up if point.value > window[0])
     problem = Problem(shapes.fan(60), "area", diameter=DIAMETER)
@@ -176,12 +176,15 @@ def test_an_eight_that_touches_at_a_point_is_stable_until_that_splits() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("diameter", "start"), [(0.05, 3900.0), (0.02, 4200.0)])
+@pytest.mark.parametrize(
+    ("diameter", "start", "edges"),
+    [(0.05, 3900.0, 60), (0.05, 4000.0, 120), (0.02, 4200.0, 60)],
+)
 def test_the_eight_goes_on_beyond_its_split_as_a_minimum(
-    diameter: float, start: float
+    diameter: float, start: float, edges: int
 ) -> None:
     """As that without a mesh is one before; sweeps, which go downhill, come to it too."""
-    mesh = round_disk(60)
+    mesh = round_disk(edges)
     exact = thick_eight(start, diameter)
     assert exact.n_unstable == 0
     problem = Problem(mesh, "area", diameter=diameter, refine=False)
@@ -210,3 +213,23 @@ def test_the_eight_goes_on_beyond_its_split_as_a_minimum(
     assert half.contacts is not None
     left = LEFT * diameter * half.contacts.force
     assert swept.energy == pytest.approx(half.energy, abs=left)
+
+
+@pytest.mark.slow
+def test_beyond_its_split_the_eight_s_energy_is_of_second_order() -> None:
+    """By meshes of which each has half of the edge length of that before it."""
+    exact, load = thick_eight(3900.0, DIAMETER), 4600.0
+    control = StepControl((3000.0, 7000.0), unit=7000.0, first_step=0.04, largest_step=0.04)
+    found = []
+    for edges in (30, 60, 120):
+        mesh = round_disk(edges)
+        problem = Problem(mesh, "area", diameter=DIAMETER, refine=False)
+        start = film_point(eight_on(mesh, exact), problem, control)
+        above = next(at.point for at in places(start, 8, control) if at.point.value > load)
+        film = at_value(above, load)
+        assert film.n_unstable == 0
+        assert film.contacts is not None
+        assert len(film.contacts) > 1
+        found.append((film.energy, film.film_energy))
+    coarse, fine = np.abs(np.diff(found, axis=0))
+    np.testing.assert_allclose(np.log2(coarse / fine), 2.0, atol=0.15)

@@ -50,9 +50,6 @@ _KEPT = 4
 _NEAR = 1e-3
 _REWEIGHTINGS = 6
 
-# How many vertices a film may come to where it is refined, over those of its mesh.
-_MOST = 3
-
 
 @dataclass(frozen=True, repr=False)
 class AreaFilm:
@@ -122,9 +119,8 @@ class AreaFilm:
 
     def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
         """Return the shape after its loop has moved, repaired where triangles got thin."""
-        return self.on(
-            *carry_along(self.tiling(shape.triangles, shape.loop), shape.x, x_loop)
-        )
+        tiling = self.tiling(shape.triangles, shape.loop)
+        return self.on(*carry_along(tiling, shape.x, x_loop))
 
     def refined(self, shape: Shape, finer: Finer) -> Shape:
         """Return the shape with finer triangles near places; itself if they are fine."""
@@ -132,7 +128,7 @@ class AreaFilm:
 
         tiling = self.tiling(shape.triangles, shape.loop)
         cut = with_cut_loop(tiling, shape.x, finer)
-        after, x = refined(*cut, finer.sizes, _MOST * self.n_v)
+        after, x = refined(*cut, finer.sizes, finer.most)
         return shape if after is tiling else self.on(after, x)
 
     def of_loop(self, near: Shape) -> AreaOfLoop:

@@ -54,11 +54,13 @@ class Finer:
     sizes : of its edges inside
     parts : (n_b,) int, into how many equal ones each edge of its loop is cut
     x_loop : (m, 3) float, where the vertices of that finer loop are
+    most : how many vertices it may come to
     """
 
     sizes: EdgeSizes
     parts: IntArray
     x_loop: FloatArray
+    most: int
 
 
 def refined(

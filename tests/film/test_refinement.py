@@ -18,7 +18,7 @@ PLACES = np.array([[0.02, 0.01, 0.0], [-0.05, 0.0, 0.0]])
 FINEST = 0.003
 MANY = 10_000
 UNCUT = np.ones(MESH.n_b, dtype=np.int64)
-AS_FINE = Finer(EdgeSizes(PLACES, FINEST), UNCUT, MESH.shape.x_loop)
+AS_FINE = Finer(EdgeSizes(PLACES, FINEST), UNCUT, MESH.shape.x_loop, MANY)
 # All kinds, and next to each other.
 PARTS = np.resize([1, 2, 4, 1, 1, 8], MESH.n_b)
 
@@ -41,7 +41,7 @@ def cut(mesh: Disk, parts: IntArray) -> tuple[Tiling, FloatArray]:
     step = np.repeat((np.roll(start, -1, axis=0) - start) / parts[:, None], parts, axis=0)
     past = np.concatenate([np.arange(m) for m in parts])
     x_loop = np.repeat(start, parts, axis=0) + past[:, None] * step
-    finer = Finer(EdgeSizes(PLACES, FINEST), parts, x_loop)
+    finer = Finer(EdgeSizes(PLACES, FINEST), parts, x_loop, MANY)
     return with_cut_loop(tiling_of(mesh), mesh.x, finer)
 
 

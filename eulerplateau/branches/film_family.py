@@ -23,6 +23,7 @@ from eulerplateau.solvers import (
     Problem,
     Status,
     TangentModel,
+    coarse,
 )
 from eulerplateau.threads import one_thread
 
@@ -223,6 +224,8 @@ def family_near(
     Of a loop with a diameter it is the equilibrium next to that with its contacts, if those
     are not known; `load` is the shape's.
     """
+    if len(shape.loop) > problem.disk.n_b:
+        shape = coarse(problem.tied_film(), problem.disk, shape)
     film = problem.film.of_loop(problem.film.prepared(shape))
     family, x = FilmFamily(problem, film, parameter, load), film.project(shape.x_loop)
     if problem.loop.diameter is None:

@@ -20,4 +20,5 @@ from .models import make_film as make_film
 from .plane import PlaneFilm as PlaneFilm, PolygonArea as PolygonArea
 from .protocol import Film as Film, FilmOfLoop as FilmOfLoop
 from .quadratic import QuadraticFilm as QuadraticFilm, Stiffness as Stiffness
+from .refinement import EdgeSizes as EdgeSizes, Finer as Finer
 from .with_loop import LoopStiffness as LoopStiffness

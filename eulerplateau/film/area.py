@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,15 +40,15 @@ from eulerplateau.loop import (
 )
 from eulerplateau.mesh import Shape
 
+if TYPE_CHECKING:
+    from eulerplateau.film.refinement import Finer
+
 # Tilings whose patterns are kept: of a sweep on a few meshes none is planned twice.
 _KEPT = 4
 
 # Re-weighting brings a rough film near: until it gains less than this part of the area.
 _NEAR = 1e-3
 _REWEIGHTINGS = 6
-
-# How many vertices a film may come to where it is refined, over those of its mesh.
-_MOST = 3
 
 
 @dataclass(frozen=True, repr=False)
@@ -76,16 +76,12 @@ class AreaFilm:
         return len(self.loop) + len(self.interior)
 
     def tiling(self, triangles: IntArray, loop: IntArray | None = None) -> Tiling:
-        """Return the tiling by these triangles (n_t, 3), its pattern kept for later.
-
-        loop : (m,) int, that which bounds them, where it may be finer than the mesh's
-        """
+        """Return the tiling by triangles (n_t, 3), on a loop that may be finer; kept."""
         for known in self._tilings:
             if known.triangles is triangles or np.array_equal(known.triangles, triangles):
                 return known
         n_v, loop = int(triangles.max()) + 1, self.loop if loop is None else loop
-        finer = n_v > self.n_v
-        inside = np.setdiff1d(np.arange(n_v), loop) if finer else self.interior
+        inside = np.setdiff1d(np.arange(n_v), loop) if n_v > self.n_v else self.interior
         return self._keep(Tiling(triangles, loop, inside))
 
     def _keep(self, tiling: Tiling) -> Tiling:
@@ -126,21 +122,14 @@ class AreaFilm:
         tiling = self.tiling(shape.triangles, shape.loop)
         return self.on(*carry_along(tiling, shape.x, x_loop))
 
-    def refined(
-        self,
-        shape: Shape,
-        places: FloatArray,
-        finest: float,
-        parts: IntArray,
-        x_loop: FloatArray,
-    ) -> Shape:
+    def refined(self, shape: Shape, finer: Finer) -> Shape:
         """Return the shape with finer triangles near places; itself if they are fine."""
-        from eulerplateau.film.refinement import EdgeSizes, refined, with_cut_loop
+        from eulerplateau.film.refinement import refined, with_cut_loop
 
         tiling = self.tiling(shape.triangles, shape.loop)
-        cut = with_cut_loop(tiling, shape.x, parts, x_loop)
-        finer, x = refined(*cut, EdgeSizes(places, finest), _MOST * self.n_v)
-        return shape if finer is tiling else self.on(finer, x)
+        cut = with_cut_loop(tiling, shape.x, finer)
+        after, x = refined(*cut, finer.sizes, finer.most)
+        return shape if after is tiling else self.on(after, x)
 
     def of_loop(self, near: Shape) -> AreaOfLoop:
         """Return the film as a function of its loop near a shape, on its triangles."""

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError
 from eulerplateau.film.area import AreaFilm
 from eulerplateau.film.folds import is_folded, laid_anew
@@ -22,6 +22,9 @@ from eulerplateau.film.load import TENSION, Load
 from eulerplateau.film.plane_mesh import carry_in_plane, is_sparse
 from eulerplateau.loop import Loop, LoopEnergy, Term, free_motions, inextensible, sliding
 from eulerplateau.mesh import Disk, Shape, polygon_area, polygon_gradient
+
+if TYPE_CHECKING:
+    from eulerplateau.film.refinement import Finer
 
 # A loop whose extent across its mean plane is a smaller part of the largest is flat.
 _FLAT = 1e-9
@@ -80,14 +83,7 @@ class PlaneFilm:
         """Return the shape after its loop has moved to x_loop (n_b, 3)."""
         return self.soap.carried(shape, x_loop)
 
-    def refined(
-        self,
-        shape: Shape,
-        places: FloatArray,
-        finest: float,
-        parts: IntArray,
-        x_loop: FloatArray,
-    ) -> Shape:
+    def refined(self, shape: Shape, finer: Finer) -> Shape:
         """Return the shape as it is: its triangles are only looked at."""
         return shape
 

@@ -6,14 +6,17 @@ The films do not import this file; they only do what it says.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from numpy.typing import NDArray
 
-from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.arrays import FloatArray
 from eulerplateau.film.load import Load
 from eulerplateau.loop import Loop, LoopEnergy
 from eulerplateau.mesh import Shape
+
+if TYPE_CHECKING:
+    from eulerplateau.film.refinement import Finer
 
 
 class Film(Protocol):
@@ -46,20 +49,11 @@ class Film(Protocol):
     def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
         """Return the shape after its loop has moved to x_loop (n_b, 3)."""
 
-    def refined(
-        self,
-        shape: Shape,
-        places: FloatArray,
-        finest: float,
-        parts: IntArray,
-        x_loop: FloatArray,
-    ) -> Shape:
-        """Return the shape with edges inside no longer than `finest` near places (k, 3).
+    def refined(self, shape: Shape, finer: Finer) -> Shape:
+        """Return the shape as fine as that near places.
 
-        Away from these in proportion. Each edge of the loop is cut into parts (n_b,), and
-        the finer loop's vertices lie at x_loop (m, 3). The shape itself where it is nearly
-        as fine, and of films that are tied to their mesh, or for which triangles are no
-        matter.
+        The shape itself where it is nearly as fine, and of films that are tied to their
+        mesh, or for which triangles are no matter.
         """
 
     def of_loop(self, near: Shape) -> FilmOfLoop:

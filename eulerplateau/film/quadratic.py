@@ -20,6 +20,8 @@ from eulerplateau.mesh import Disk, Shape, cotangents
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
+    from eulerplateau.film.refinement import Finer
+
 # Cotangents are as large as a triangle is thin; of this size they leave the weights of the
 # triangles around it four digits.
 _THINNEST = 1e-12
@@ -90,14 +92,7 @@ class QuadraticFilm:
         """Return the film at rest on a loop (n_b, 3)."""
         return self._eliminated.shape(x_loop)
 
-    def refined(
-        self,
-        shape: Shape,
-        places: FloatArray,
-        finest: float,
-        parts: IntArray,
-        x_loop: FloatArray,
-    ) -> Shape:
+    def refined(self, shape: Shape, finer: Finer) -> Shape:
         """Return the shape as it is: the mesh is what the film is made of."""
         return shape
 

@@ -1,8 +1,8 @@
 """Finer triangles inside a soap film near places where strands of its loop cross.
 
 There the film is a helicoid as narrow as the strands are apart, and elsewhere nearly flat.
-Along a strand its normal turns by a right angle over about that width: triangles that end on
-longer edges of the loop are thin or cannot follow, so that these are cut there as well.
+Along a strand its normal turns by a right angle over about that width: triangles that end
+on longer edges of the loop are thin or cannot follow, so that these are cut there as well.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.linalg import LinAlgError
 
 from eulerplateau.arrays import BoolArray, FloatArray, IntArray
+from eulerplateau.film.harmonic import follower
 from eulerplateau.film.repair import mend_triangles
 from eulerplateau.film.tiling import Tiling
 
@@ -19,12 +21,14 @@ from eulerplateau.film.tiling import Tiling
 _GROWTH = 0.2
 # How long edges from the loop inwards may be over the loop's own, at the least: on one of
 # those shorter ones make thin triangles.
-_AT_LOOP = 0.4
+_AT_LOOP = 0.7
 # By how much an edge is too long where refinement begins, again too: it leaves none that is
 # too long at all, and as the place moves on along the loop edges slide and stretch.
 _SLACK = 1.3
-# In one round no triangle is halved twice.
-_ROUNDS = 30
+# In one round no triangle is halved twice; triangles are mended once in so many.
+_ROUNDS, _MENDED = 60, 3
+# How often a film is smoothed at the end.
+_SMOOTHED = 5
 
 
 @dataclass(frozen=True)
@@ -41,6 +45,24 @@ class EdgeSizes:
         return sizes
 
 
+@dataclass(frozen=True)
+class Finer:
+    """How fine a film is to be.
+
+    Attributes
+    ----------
+    sizes : of its edges inside
+    parts : (n_b,) int, into how many equal ones each edge of its loop is cut
+    x_loop : (m, 3) float, where the vertices of that finer loop are
+    most : how many vertices it may come to
+    """
+
+    sizes: EdgeSizes
+    parts: IntArray
+    x_loop: FloatArray
+    most: int
+
+
 def refined(
     tiling: Tiling, x: FloatArray, sizes: EdgeSizes, most: int
 ) -> tuple[Tiling, FloatArray]:
@@ -52,23 +74,36 @@ def refined(
     edges = _Edges.of(tiling, x)
     if not (edges.inside & (edges.lengths > _SLACK * edges.allowed(sizes))).any():
         return tiling, x
-    for _ in range(_ROUNDS):
+    for number in range(_ROUNDS):
         halved = _halved(tiling, x, sizes)
         if halved is None or halved[0].n_v > most:
             break
-        tiling, x = mend_triangles(*halved)
-    return tiling, x
+        tiling, x = halved if number % _MENDED else _smoothed(*halved)
+    for _ in range(_SMOOTHED):
+        tiling, x = _smoothed(tiling, x)
+    return mend_triangles(tiling, x)
 
 
-def with_cut_loop(
-    tiling: Tiling, x: FloatArray, parts: IntArray, x_loop: FloatArray
-) -> tuple[Tiling, FloatArray]:
-    """Return a film (n_v, 3) each of whose loop's edges is cut into parts (n_b,).
+def _smoothed(tiling: Tiling, x: FloatArray) -> tuple[Tiling, FloatArray]:
+    """Return the film (n_v, 3) with better triangles and, if that takes area, harmonic.
 
-    x_loop : (m, 3) float, where the vertices of the finer loop are, m the sum of the parts
-
-    Vertices are added behind those there are. The film as it was if all parts are 1.
+    With the cotangent weights of what it was (Pinkall and Polthier 1993): where the mesh's
+    film was too coarse for its waist it lies in folds, and so does a finer one at first.
     """
+    tiling, x = mend_triangles(tiling, x)
+    try:
+        after = follower(tiling, tiling.sides(x)).extend(x[tiling.loop])
+    except LinAlgError:
+        return tiling, x
+    return (tiling, after) if tiling.change(x, after) < 0.0 else (tiling, x)
+
+
+def with_cut_loop(tiling: Tiling, x: FloatArray, finer: Finer) -> tuple[Tiling, FloatArray]:
+    """Return a film (n_v, 3) whose loop is finer: itself if all parts are 1.
+
+    Vertices are added behind those there are.
+    """
+    parts, x_loop = finer.parts, finer.x_loop
     if len(x_loop) == len(parts):
         return tiling, x
     ends = np.column_stack([tiling.loop, np.roll(tiling.loop, -1)])

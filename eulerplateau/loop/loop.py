@@ -58,8 +58,6 @@ class Loop:
 
     def cut(self, parts: IntArray) -> Loop:
         """Return the same loop, each of its edges cut into so many equal parts (n_b,)."""
-        if parts.max() == 1:
-            return self
         lengths = np.repeat(self.rest_lengths / parts, parts)
         for known in self._finer:
             if np.array_equal(known.rest_lengths, lengths):

@@ -33,6 +33,7 @@ from .solving import (
     sweep as sweep,
 )
 from .start import (
+    coarse as coarse,
     displaced as displaced,
     smooth_kick as smooth_kick,
 )

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.linalg import LinAlgError
 from numpy.typing import ArrayLike
 
-from eulerplateau.arrays import FloatArray, IntArray
+from eulerplateau.arrays import FloatArray
 from eulerplateau.errors import MeshError, SpecError
 from eulerplateau.film import Film, FilmOfLoop, make_film
 from eulerplateau.loop import Loop, Rod, largest_turning, remove_sliding
@@ -86,11 +86,6 @@ class Problem:
         film = type(self.film).__name__
         return f"<Problem: {film} on {self.disk.n_v} vertices, {self.disk.n_b} on the loop>"
 
-    @property
-    def loop_vertices(self) -> IntArray:
-        """Vertices of the loop (n_b,), cyclic."""
-        return self.disk.loop
-
     def value(self, parameter: str, load: float) -> float:
         """Return a parameter of the energy: the load, or one of the loop's own."""
         return {"load": load, **self.loop.parameters}[parameter]
@@ -135,8 +130,9 @@ class Problem:
             return None
 
     def loop_of(self, shape: Shape) -> Loop:
-        """Return the loop of a shape, which is finer where its film was refined."""
-        return self.loop.cut(self.disk.parts(shape.loop))
+        """Return the loop of a shape, finer than the mesh's where its film was refined."""
+        refined = len(shape.loop) > self.disk.n_b
+        return self.loop.cut(self.disk.parts(shape.loop)) if refined else self.loop
 
     def bending_energy(self, shape: Shape) -> tuple[float, FloatArray]:
         """Return the loop's bending energy and its gradient (n_v, 3)."""
@@ -176,9 +172,8 @@ class Problem:
 
     def tension_force(self, shape: Shape, tensions: FloatArray) -> FloatArray:
         """Return J^T lambda (n_v, 3) for the tensions lambda (n_b,) of the loop's edges."""
-        return self.on_loop(
-            shape, self.loop_of(shape).tension_force(shape.x_loop, tensions)
-        )
+        loop = self.loop_of(shape)
+        return self.on_loop(shape, loop.tension_force(shape.x_loop, tensions))
 
     def residual(
         self,

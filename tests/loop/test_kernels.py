@@ -47,7 +47,7 @@ def augmented(problem: Problem, base: FloatArray, lam: FloatArray) -> twins.Fiel
             at_base,
             problem.film.edges,
             LOAD * problem.film.weights,
-            problem.loop_vertices,
+            problem.disk.loop,
             loop.rest_lengths,
             tension,
             PENALTY,
@@ -143,7 +143,7 @@ def test_gradient_is_added_to_what_is_there(
         kernels.film_energy_gradient(x, problem.film.edges, weights, there)
     else:
         kernels.bending_energy_gradient(
-            x, problem.loop_vertices, problem.loop.rest_lengths, there
+            x, problem.disk.loop, problem.loop.rest_lengths, there
         )
     np.testing.assert_allclose(there, 1 + energy(oval)(x)[1], rtol=1e-12, atol=1e-12)
 

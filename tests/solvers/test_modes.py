@@ -31,7 +31,7 @@ def test_lowest_mode_has_the_lowest_eigenvalue_and_keeps_lengths(
         monkeypatch.setattr(quadratic_models, "DENSE_LOOP", 40)
     mode = lowest_modes(problem, found, 1)["mode_0"]
     assert np.linalg.norm(mode, axis=1).max() == pytest.approx(1.0)
-    loop = problem.loop_vertices
+    loop = problem.disk.loop
     model = tangent_model(loop_energy(problem, 700.0), found.shape.x_loop)
     coefficients = model.basis.T @ (mode[loop].ravel() * model.scale)
     size = float(coefficients @ coefficients)

@@ -142,7 +142,7 @@ def test_largest_turning_of_a_bent_square_is_the_angle_it_is_bent_by(angle: floa
 def test_any_record_is_judged_by_its_loop_alone(bend: float) -> None:
     """The rule is the problem's: solvers and branches ask it about every shape."""
     problem = Problem(oval().mesh)
-    guess = oval().mesh.x[problem.loop_vertices] * [bend, 1.0, 1.0]
+    guess = oval().mesh.x[problem.disk.loop] * [bend, 1.0, 1.0]
     x_loop = close_with_lengths(problem.loop, guess)
     assert x_loop is not None
     shape = equilibria.spanned(problem, x_loop)

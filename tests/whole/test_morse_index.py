@@ -31,7 +31,7 @@ def whole_film_index(
         return (problem.film.energy_gradient(at, load)[1] + bent).ravel()
 
     hessian = np.stack([force(row) for row in np.eye(size)])
-    b = problem.loop_vertices
+    b = problem.disk.loop
     rows = []
     for v in range(len(b)):
         row = np.zeros_like(x)

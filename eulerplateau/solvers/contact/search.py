@@ -12,7 +12,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from eulerplateau.arrays import FloatArray, IntArray
-from eulerplateau.film import FilmOfLoop
+from eulerplateau.film import EdgeSizes, FilmOfLoop, Finer
 from eulerplateau.loop import LoopEnergy, Strands, close_with_lengths, strands_of
 from eulerplateau.mesh import Shape
 from eulerplateau.solvers.acceptance import at_rounding
@@ -28,13 +28,16 @@ from eulerplateau.solvers.second_variation import stability
 from eulerplateau.solvers.start import coarse
 from eulerplateau.threads import one_thread
 
-# How long edges may be where strands cross. Those of the loop: in diameters, but in units of
-# L so long that rounding leaves what an equilibrium must meet; farther away in proportion.
+# How long edges may be where strands cross. Those of the loop: in diameters, or in units of
+# L if that is more, since rounding leaves short ones no equilibrium; farther away in
+# proportion.
 _LOOP_OF_DIAMETER, _LOOP_LEAST, _LOOP_GROWTH = 1.5, 1.5e-3, 0.35
 # By how much they are too long where they are cut.
 _SLACK = 1.3
 # Those of the film: in diameters, or in edges of the loop there if that is more.
 _OF_DIAMETER, _OF_LOOP = 1 / 4, 1 / 5
+# How many vertices a film may come to, over those of its mesh.
+_MOST = 3
 # A film is refined once in one solve, and laid on its mesh again where its strands part.
 _TIMES = 2
 
@@ -240,7 +243,8 @@ def _fit(problem: Problem, found: Equilibrium) -> Shape:
         finest = max(_OF_DIAMETER * diameter, _OF_LOOP * float(lengths.min()))
         x_loop = strands_of(loop).curve(shape.x_loop)(np.cumsum(lengths) - lengths)
         points = contacts.points.mean(axis=0)[crossing]
-        return problem.film.refined(shape, points, finest, parts, x_loop)
+        sizes, most = EdgeSizes(points, finest), _MOST * problem.disk.n_v
+        return problem.film.refined(shape, Finer(sizes, parts, x_loop, most))
     parted = len(contacts) == 0 and isinf(contacts.smallest_gap)
     return (
         coarse(problem.tied_film(), problem.disk, shape)

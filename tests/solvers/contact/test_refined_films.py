@@ -57,20 +57,21 @@ def found(refine: bool) -> Equilibrium:
     return from_eight(problem_of(refine=refine), LOAD)
 
 
-def test_vertices_are_added_inside_near_the_contact_and_nothing_else_changes() -> None:
+def test_vertices_are_added_near_the_contact_and_the_state_is_kept() -> None:
     plain, finer = found(False), found(True)
     assert plain.is_minimum
     assert finer.is_minimum
     assert len(plain.shape.x) == MESH.n_v < len(finer.shape.x)
-    assert finer.shape.loop.tolist() == MESH.loop.tolist()
-    assert finer.length_error < 1e-14
+    loop = problem_of().loop_of(finer.shape)
+    assert finer.shape.loop[finer.shape.loop < MESH.n_v].tolist() == MESH.loop.tolist()
+    assert len(finer.tensions) == len(finer.shape.loop) == len(loop.rest_lengths)
+    assert finer.length_error < 1e-13
     assert finer.contacts is not None
     assert len(finer.contacts) == 1
     assert finer.contacts.smallest_gap > -1e-11
-    # Half of the new ones nearer than half of the old ones.
     place = finer.contacts.points.mean(axis=(0, 1))
     away = np.linalg.norm(finer.shape.x - place, axis=1)
-    assert np.median(away[MESH.n_v :]) < 0.5 * np.median(away[: MESH.n_v])
+    assert np.median(away[MESH.n_v :]) < np.median(away[: MESH.n_v])
 
 
 def test_a_finer_film_has_less_area_and_so_less_energy() -> None:
@@ -87,6 +88,18 @@ def test_strands_push_with_the_slope_of_the_refined_film_s_energy() -> None:
     assert len(wide.shape.x) == len(narrow.shape.x) == len(finer.shape.x)
     slope = (wide.energy - narrow.energy) / (2 * h)
     assert finer.contacts.force == pytest.approx(slope, rel=1e-4)
+
+
+def test_edges_of_the_loop_are_parts_of_the_mesh_s_and_short_where_strands_cross() -> None:
+    finer, rest = found(True), MESH.rest_lengths
+    loop, parts = problem_of().loop_of(finer.shape), MESH.parts(finer.shape.loop)
+    assert loop.rest_lengths.tolist() == np.repeat(rest / parts, parts).tolist()
+    assert set(parts) == {1, 2}
+    assert finer.contacts is not None
+    knots = np.cumsum(loop.rest_lengths)
+    for place in (finer.contacts.s, finer.contacts.t):
+        edge = np.searchsorted(knots, place % 1.0)
+        assert (loop.rest_lengths[edge] <= 1.5 * THICK).all()
 
 
 def test_a_film_that_is_fine_enough_is_left_alone() -> None:
@@ -118,7 +131,7 @@ def test_a_problem_that_does_not_refine_takes_of_a_refined_shape_its_loop(
     assert tied is not None
     taken = solve(problem, LOAD, found(True).shape)
     assert len(taken.shape.x) == MESH.n_v
-    alike = solve(problem, LOAD, tied.shape(found(True).shape.x_loop))
+    alike = solve(problem, LOAD, tied.shape(found(True).shape.x[MESH.loop]))
     assert taken.energy == pytest.approx(alike.energy, rel=1e-12)
 
 

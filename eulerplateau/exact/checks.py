@@ -34,18 +34,25 @@ def finite(name: str, value: object) -> float:
     except (TypeError, ValueError):
         found = -1.0
     if not (isfinite(found) and found >= 0):
-        shown = value if isinstance(value, (float, int)) else repr(value).splitlines()[0]
-        raise SpecError(name, f"found {shown}; should be finite and not negative")
+        raise SpecError(name, f"found {_shown(value)}; should be finite and not negative")
     return found
 
 
 def checked_diameter(value: object) -> float:
     """Return a loop's diameter in units of its length; SpecError for anything else."""
-    found = finite("diameter", value)
+    try:
+        found = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        found = 0.0
     if not 0 < found <= THICKEST:
-        problem = f"found {found}; should be above 0 and at most {THICKEST:g}"
+        problem = f"found {_shown(value)}; should be above 0 and at most {THICKEST:g}"
         raise SpecError("diameter", problem)
     return found
+
+
+def _shown(value: object) -> str:
+    is_plain = isinstance(value, (float, int))
+    return str(value) if is_plain else repr(value).splitlines()[0]
 
 
 def points(name: str, value: ArrayLike, dimensions: tuple[int, ...]) -> FloatArray:

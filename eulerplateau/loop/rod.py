@@ -33,6 +33,7 @@ class Rod:
 
         rest_lengths : (n_b,) float, of its edges; in_plane : whether it is kept in a plane
         """
+        self._refuse_what_is_no_number()
         self._refuse_wrong_diameter()
         bare = Loop(rest_lengths, diameter=self.diameter)
         if self.twist_ratio is None:
@@ -53,6 +54,13 @@ class Rod:
         twist = PlaneTwist if in_plane else Twist
         terms = {"twist": twist(bare, self.twist_ratio, self.link)}
         return replace(bare, terms=terms)
+
+    def _refuse_what_is_no_number(self) -> None:
+        for name, value in vars(self).items():
+            try:
+                isfinite(0.0 if value is None else value)
+            except TypeError:
+                raise SpecError(name, f"found {value!r}; should be a number") from None
 
     def _refuse_wrong_diameter(self) -> None:
         most = MOST["diameter"]

@@ -59,12 +59,13 @@ def without_noise(
 ) -> FloatArray:
     """Return a curve's values (n,) as they are drawn: zero if all lie within their errors.
 
-    Rows that are not converged, and values that are NaN, say nothing about that.
+    Rows that are not converged, and values that are NaN, say nothing about that. Values of
+    such rows are zero too if they are no larger than the others' errors.
     """
     seen = np.array([row.converged for row in rows], dtype=bool) & np.isfinite(values)
     if not seen.any():
         return values
     errors = np.array([error(row) for row in rows])
     if (np.abs(values[seen]) <= errors[seen]).all():
-        return np.where(seen, 0.0, values)
+        return np.where(seen | (np.abs(values) <= errors[seen].max()), 0.0, values)
     return values

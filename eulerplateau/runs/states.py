@@ -13,6 +13,10 @@ from eulerplateau.runs.rows import Row
 # Below this the loop's normal curvature is a remnant of the transverse kick and of soft
 # modes near onset; a twisted state 1e-3 (relative) above its onset is well above it.
 _PLANAR_BELOW = 0.05
+# Strands that touch in a plane have one direction, but for such remnants. Those that cross
+# (in degrees) are a diameter apart across every plane, though the film of a thin line is
+# all but flat elsewhere.
+_CROSSED_ABOVE = 1.0
 # A planar film this round is called a disk, a longer one an ellipse (or an eight).
 _ROUND_ABOVE = 0.95
 # A saddle is shown from this part of its largest normal curvature on.
@@ -42,8 +46,12 @@ class States:
 
 
 def is_planar(row: Row) -> bool:
-    """Whether the film lies in a plane, judged by the integral of |kappa_n| ds."""
-    return row.abs_kappa_n < _PLANAR_BELOW
+    """Whether the film lies in a plane, judged by the integral of |kappa_n| ds.
+
+    One whose strands cross does not, however little it bends.
+    """
+    crossing_angle = getattr(row, "crossing_angle", None) or 0.0
+    return row.abs_kappa_n < _PLANAR_BELOW and crossing_angle < _CROSSED_ABOVE
 
 
 def between_planar(rows: Sequence[Row]) -> tuple[float, float] | None:

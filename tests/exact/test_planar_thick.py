@@ -231,7 +231,9 @@ def test_polygons_of_least_energy_that_may_not_overlap_converge_to_the_films(
 @pytest.mark.parametrize("diameter", [0.0, -0.01, 0.1000001, inf, float("nan"), "thick"])
 def test_impossible_diameters_are_refused(diameter: float) -> None:
     for ask in (lambda: planar_film(2, 2000.0, diameter), lambda: thresholds(2, diameter)):
-        with pytest.raises(SpecError, match=r"^diameter: found"):
+        with pytest.raises(
+            SpecError, match=r"^diameter: found .*; should be above 0 and at"
+        ):
             ask()
 
 

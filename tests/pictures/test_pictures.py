@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,7 @@ from eulerplateau.mesh.shape import Shape
 from eulerplateau.pictures.figure import drawn
 from eulerplateau.pictures.render import draw_shapes
 from eulerplateau.pictures.sweep_diagram import draw_diagram, plot_diagram
+from eulerplateau.runs.own_columns import OfContact, with_own
 from eulerplateau.runs.record import Run
 from eulerplateau.runs.rows import Row
 from eulerplateau.runs.states import distinct_steps
@@ -109,6 +110,35 @@ def test_a_saddle_that_cuts_through_itself_is_a_state_of_its_own(rows: list[Row]
 
 def test_film_without_a_waist_path_still_has_states(rows: list[Row]) -> None:
     assert distinct_steps([replace(row, waist_twist=math.nan) for row in rows])
+
+
+@pytest.mark.parametrize("diameter", [0.05, 0.01, 0.001, 1e-5])
+def test_a_thick_loop_has_the_same_states_however_thin_it_is(diameter: float) -> None:
+    """Disk, lobes, lobes that touch, the eight: it flattens as the line is thinner.
+
+    Its strands cross all the same, at an angle that does not vanish with the diameter, so
+    that it is no state of the lobes.
+    """
+    thick = with_own(OfContact, Row)
+    cells = asdict(ROW)
+    sequence = [
+        (1e-9, 0.99, None),
+        (1e-9, 0.5, None),
+        (1e-9, 0.3, 1e-12),
+        (25.0 * diameter, 0.2, 60.0),
+        (25.0 * diameter, 0.2, 30.0),
+        (1e-9, 0.99, None),
+    ]
+    rows = [
+        thick(
+            **cells
+            | {"step": step, "abs_kappa_n": bent, "waist_twist": 0.0, "aspect": aspect}
+            | {"contacts": int(angle is not None), "contact_force": 0.0}
+            | {"smallest_gap": None, "crossing_angle": angle, "film_vertices": 100}
+        )
+        for step, (bent, aspect, angle) in enumerate(sequence)
+    ]
+    assert distinct_steps(rows) == [0, 2, 3, 5]
 
 
 def test_alignment_undoes_every_rigid_motion(mesh: Disk) -> None:

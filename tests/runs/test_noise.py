@@ -73,6 +73,9 @@ def test_rows_that_say_nothing_do_not_decide() -> None:
     noise = np.array([1e-15, 1.0, np.nan])
     found = without_noise(rows, noise, bend_error)
     assert np.array_equal(found, [0.0, 1.0, np.nan], equal_nan=True)
+    # One that says nothing but is noise itself does not set an axis's scale.
+    noise = np.array([1e-15, -0.9 * bend_error(rows[0]), 1e-15])
+    assert np.array_equal(without_noise(rows, noise, bend_error), np.zeros(3))
     nothing = np.full(3, np.nan)
     assert without_noise(rows, nothing, bend_error) is nothing
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -179,6 +180,13 @@ def test_a_loop_that_bends_more_than_its_rod_can_is_too_thick() -> None:
 def test_a_diameter_out_of_range_is_refused(diameter: float) -> None:
     with pytest.raises(SpecError, match="diameter"):
         Problem(disk(), "springs", diameter=diameter)
+
+
+@pytest.mark.parametrize("name", ["diameter", "twist_ratio", "link", "rest_curvature"])
+def test_text_in_place_of_a_number_of_the_rod_is_refused(name: str) -> None:
+    rod: dict[str, Any] = {"diameter": 0.01, "twist_ratio": 0.7} | {name: "0.3 mm"}
+    with pytest.raises(SpecError, match=f"^{name}: found '0.3 mm'; should be a number"):
+        Problem(disk(), "springs", **rod)
 
 
 @pytest.mark.parametrize("solver", ["cg", "cg-plain"])

@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 
 from eulerplateau.branches.brent import zero_between
-from eulerplateau.branches.continuation import RECENTRINGS, recentred
 from eulerplateau.branches.control import Hyperplane, StepControl
 from eulerplateau.branches.family import Family
 from eulerplateau.branches.point import NOISE, BranchPoint, along, correct
@@ -17,6 +16,8 @@ from eulerplateau.branches.point import NOISE, BranchPoint, along, correct
 _PRECISION = 1e-14
 # Part of an interval about what has been located there in which it is located again.
 _ABOUT = 0.1
+# How often a film is made anew at what has been located, until its forces balance.
+_RENEWALS = 4
 _ROUNDING = 4 * float(np.finfo(np.float64).eps)
 
 
@@ -95,12 +96,10 @@ class Interval:
         little, and the film is made anew there. None if it is not located at all.
         """
         interval, point = self, locate(self)
-        for _ in range(RECENTRINGS):
+        for _ in range(_RENEWALS):
             if point is None or point.family.rests(point.model, point.value):
                 break
-            # At a bifurcation a point's own direction means nothing.
-            here = replace(point, direction=self.before.direction)
-            part = self.about(here, recentred(here, self.control).family)
+            part = self.about(point, point.family.near(point.x))
             again = None if part is None else locate(part)
             if part is None or again is None:
                 break

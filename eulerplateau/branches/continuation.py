@@ -26,7 +26,7 @@ from eulerplateau.branches.point import (
 
 _EASY = 4  # corrections up to which the step may grow
 _STRAIGHT = 0.8  # cosine of the largest turn from one point to the next
-RECENTRINGS = 4  # how often a film is made anew at a point, until its forces balance
+_RECENTRINGS = 4  # how often a film is made anew at a point, until its forces balance
 _LEAST_LEAP = 1e-4  # arclength below which a leap is none, but a branch that turns
 
 
@@ -193,7 +193,7 @@ def recentred(point: BranchPoint, control: StepControl) -> BranchPoint:
     if point.family.rests(point.model, point.value):
         return point
     point = released(point, control)
-    for _ in range(RECENTRINGS):
+    for _ in range(_RECENTRINGS):
         if point.family.rests(point.model, point.value):
             break
         point = _anew(point, point.family.near(point.x), control)

@@ -11,7 +11,7 @@ import pytest
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
-from eulerplateau.branches import BIFURCATION, FilmFamily, FilmPoint, explore
+from eulerplateau.branches import BIFURCATION, FOLD, FilmFamily, FilmPoint, explore
 from eulerplateau.branches.film_family import family_near
 from eulerplateau.errors import SpecError
 from eulerplateau.solvers import RESIDUAL_TOLERANCE, Problem, solve, sweep
@@ -136,6 +136,22 @@ def test_forces_balance_at_every_point_though_its_film_leaves_the_plane_by_and_b
     found = explore(problem, (0.0, 0.3), parameter="link", load=1700.0, special_points=0)
     films = [point.equilibrium for point in found]
     assert np.ptp(films[-1].shape.x[:, 2]) > 0.01
+    assert max(film.residual for film in films) <= RESIDUAL_TOLERANCE
+
+
+@pytest.mark.slow
+def test_forces_balance_at_folds_too() -> None:
+    """Twisted films of a turned disk are turned most and least at folds: off any point."""
+    mesh = shapes.mesh_of(*shapes.disk_points(5))
+    problem = Problem(mesh, "area", twist_ratio=0.5)
+    how = {"parameter": "link", "load": 1200.0, "special_points": 1, "unstable_modes": 1}
+    found = explore(problem, (0.0, 1.2), **how)  # type: ignore[arg-type]
+    films = [
+        point.equilibrium
+        for point in found
+        if point.special is not None and point.special.kind == FOLD
+    ]
+    assert len(films) == 4
     assert max(film.residual for film in films) <= RESIDUAL_TOLERANCE
 
 

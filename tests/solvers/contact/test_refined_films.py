@@ -122,11 +122,14 @@ def test_where_strands_have_parted_the_film_is_its_mesh_s_again() -> None:
     assert opened.energy == pytest.approx(solve(problem_of(), 300.0).energy, rel=1e-12)
 
 
-@pytest.mark.parametrize("film", ["area", "springs"])
+@pytest.mark.parametrize(
+    ("film", "diameter"), [("area", None), ("springs", None), ("springs", THICK)]
+)
 def test_a_problem_that_does_not_refine_takes_of_a_refined_shape_its_loop(
-    film: str,
+    film: str, diameter: float | None
 ) -> None:
-    problem = Problem(MESH, film, refine=False)
+    """One that has no contact, or whose film is tied to its mesh."""
+    problem = Problem(MESH, film, diameter=diameter)
     tied = problem.tied_film()
     assert tied is not None
     taken = solve(problem, LOAD, found(True).shape)

@@ -65,6 +65,7 @@ class AreaFilm:
     load: Load = TENSION
     _tilings: list[Tiling] = field(default_factory=list, repr=False, compare=False)
     _recent: list[AreaOfLoop] = field(default_factory=list, repr=False, compare=False)
+    refines = True
 
     def __repr__(self) -> str:
         """Return one line: how many vertices, and the load's name."""

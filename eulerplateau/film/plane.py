@@ -83,8 +83,13 @@ class PlaneFilm:
         """Return the shape after its loop has moved to x_loop (n_b, 3)."""
         return self.soap.carried(shape, x_loop)
 
+    @property
+    def refines(self) -> bool:
+        """False: its triangles are only looked at."""
+        return False
+
     def refined(self, shape: Shape, finer: Finer) -> Shape:
-        """Return the shape as it is: its triangles are only looked at."""
+        """Return the shape as it is."""
         return shape
 
     def of_loop(self, near: Shape) -> PlaneOfLoop:

@@ -49,12 +49,12 @@ class Film(Protocol):
     def carried(self, shape: Shape, x_loop: FloatArray) -> Shape:
         """Return the shape after its loop has moved to x_loop (n_b, 3)."""
 
-    def refined(self, shape: Shape, finer: Finer) -> Shape:
-        """Return the shape as fine as that near places.
+    @property
+    def refines(self) -> bool:
+        """Whether it may be finer than its mesh: not if it is tied to that."""
 
-        The shape itself where it is nearly as fine, and of films that are tied to their
-        mesh, or for which triangles are no matter.
-        """
+    def refined(self, shape: Shape, finer: Finer) -> Shape:
+        """Return the shape as fine as that, if it may be; itself where it nearly is."""
 
     def of_loop(self, near: Shape) -> FilmOfLoop:
         """Return the film as a function of its loop, good near a shape."""

@@ -92,8 +92,13 @@ class QuadraticFilm:
         """Return the film at rest on a loop (n_b, 3)."""
         return self._eliminated.shape(x_loop)
 
+    @property
+    def refines(self) -> bool:
+        """False: the mesh is what the film is made of."""
+        return False
+
     def refined(self, shape: Shape, finer: Finer) -> Shape:
-        """Return the shape as it is: the mesh is what the film is made of."""
+        """Return the shape as it is."""
         return shape
 
     def of_loop(self, near: Shape) -> QuadraticOfLoop:

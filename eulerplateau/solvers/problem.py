@@ -67,7 +67,7 @@ class Problem:
         the rigidities' C / B, the loop resists twist: it was turned `link` times and then
         welded; by nature it is `rest_curvature` times as curved as a circle of its length.
         With a `diameter`, in units of L, its strands touch and pass through nothing; where
-        they cross, a film of true area gets finer triangles, unless `refine` is false.
+        they cross, loop and film of true area are finer, unless `refine` is false.
         Raises SpecError for an unknown film or a wrong number, MeshError for a disk that
         cannot carry it.
         """
@@ -79,7 +79,8 @@ class Problem:
         object.__setattr__(self, "film", made)
         rod = Rod(twist_ratio, link, rest_curvature, diameter)
         object.__setattr__(self, "loop", rod.loop(disk.rest_lengths, in_plane))
-        object.__setattr__(self, "refines", refine and diameter is not None)
+        refines = refine and made.refines and diameter is not None
+        object.__setattr__(self, "refines", refines)
 
     def __repr__(self) -> str:
         """Return one line: the film, and the size of its mesh."""
@@ -131,8 +132,8 @@ class Problem:
 
     def loop_of(self, shape: Shape) -> Loop:
         """Return the loop of a shape, finer than the mesh's where its film was refined."""
-        refined = len(shape.loop) > self.disk.n_b
-        return self.loop.cut(self.disk.parts(shape.loop)) if refined else self.loop
+        same = len(shape.loop) == self.disk.n_b
+        return self.loop if same else self.loop.cut(self.disk.parts(shape.loop))
 
     def bending_energy(self, shape: Shape) -> tuple[float, FloatArray]:
         """Return the loop's bending energy and its gradient (n_v, 3)."""
@@ -220,8 +221,8 @@ class Problem:
 
     def pinched(self, shape: Shape) -> bool:
         """Return whether strands meet where there is no film, or no loop, beyond that."""
-        loop = self.loop_of(shape)
-        return loop.pinched(shape.x_loop) or self.film.pinched(shape, loop)
+        loop, x = self.loop_of(shape), shape.x_loop
+        return loop.pinched(x) or self.film.pinched(shape, loop)
 
     def equilibrium(
         self,

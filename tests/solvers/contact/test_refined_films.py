@@ -11,7 +11,7 @@ from scipy.spatial import Delaunay
 from eulerplateau.arrays import FloatArray
 from eulerplateau.branches.conformal.contact_eight import refined, touching
 from eulerplateau.mesh import Disk, mesh_polygon
-from eulerplateau.solvers import Equilibrium, Problem, solve, sweep
+from eulerplateau.solvers import Equilibrium, Problem, Status, solve, sweep
 from scripts.studies.contact_eight.refinement import DIAMETER, LOADS, WAY
 from tests.helpers import shapes
 
@@ -41,8 +41,8 @@ def eight(mesh: Disk, thick: float) -> FloatArray:
     return x / float(np.linalg.norm(np.roll(x, -1, axis=0) - x, axis=1).sum())
 
 
-def problem_of(diameter: float = THICK, *, refine: bool = True) -> Problem:
-    return Problem(MESH, "area", diameter=diameter, refine=refine)
+def problem_of(diameter: float = THICK, *, refine: bool = True, **rod: float) -> Problem:
+    return Problem(MESH, "area", diameter=diameter, refine=refine, **rod)
 
 
 def from_eight(problem: Problem, load: float) -> Equilibrium:
@@ -81,10 +81,26 @@ def test_a_finer_film_has_less_area_and_so_less_energy() -> None:
     assert finer.energy < plain.energy
 
 
-def test_strands_push_with_the_slope_of_the_refined_film_s_energy() -> None:
-    finer, h = found(True), 1e-4
+ROD = {"twist_ratio": 2 / 3, "link": 0.25}
+
+
+@pytest.mark.parametrize(
+    "rod",
+    [
+        {},
+        pytest.param(ROD, marks=pytest.mark.slow),
+        pytest.param({**ROD, "rest_curvature": 0.5}, marks=pytest.mark.slow),
+    ],
+)
+def test_strands_push_with_the_slope_of_the_refined_film_s_energy(
+    rod: dict[str, float],
+) -> None:
+    """Whatever the rod resists beside bending."""
+    finer, h = from_eight(problem_of(**rod), LOAD), 1e-4
     assert finer.contacts is not None
-    wide, narrow = (solve(problem_of(THICK + way * h), LOAD, finer) for way in (1, -1))
+    wide, narrow = (
+        solve(problem_of(THICK + way * h, **rod), LOAD, finer) for way in (1, -1)
+    )
     assert len(wide.shape.x) == len(narrow.shape.x) == len(finer.shape.x)
     slope = (wide.energy - narrow.energy) / (2 * h)
     assert finer.contacts.force == pytest.approx(slope, rel=1e-4)
@@ -114,6 +130,25 @@ def test_a_film_that_is_fine_enough_is_left_alone() -> None:
     assert len(wide.shape.x) == MESH.n_v
 
 
+@pytest.mark.slow
+def test_numbers_of_vertices_do_not_matter() -> None:
+    order = np.random.default_rng(5).permutation(MESH.n_v)
+    number = np.argsort(order)
+    mesh = Disk.from_triangles(MESH.x[order], number[MESH.triangles])
+    problem = Problem(mesh, "area", diameter=THICK)
+    tied = problem.tied_film()
+    assert tied is not None
+    places = np.empty((MESH.n_v, 3))
+    places[MESH.loop] = eight(MESH, THICK)
+    other, finer = solve(problem, LOAD, tied.shape(places[order][mesh.loop])), found(True)
+    assert other.contacts is not None
+    assert finer.contacts is not None
+    assert len(other.shape.loop) == len(finer.shape.loop)
+    # Where vertices inside lie, and so how many there are, is no part of the state.
+    assert other.energy == pytest.approx(finer.energy, rel=1e-5)
+    assert other.contacts.force == pytest.approx(finer.contacts.force, rel=1e-2)
+
+
 def test_where_strands_have_parted_the_film_is_its_mesh_s_again() -> None:
     opened = solve(problem_of(), 300.0, found(True))
     assert opened.contacts is not None
@@ -122,11 +157,14 @@ def test_where_strands_have_parted_the_film_is_its_mesh_s_again() -> None:
     assert opened.energy == pytest.approx(solve(problem_of(), 300.0).energy, rel=1e-12)
 
 
-@pytest.mark.parametrize("film", ["area", "springs"])
+@pytest.mark.parametrize(
+    ("film", "diameter"), [("area", None), ("springs", None), ("springs", THICK)]
+)
 def test_a_problem_that_does_not_refine_takes_of_a_refined_shape_its_loop(
-    film: str,
+    film: str, diameter: float | None
 ) -> None:
-    problem = Problem(MESH, film, refine=False)
+    """One that has no contact, or whose film is tied to its mesh."""
+    problem = Problem(MESH, film, diameter=diameter)
     tied = problem.tied_film()
     assert tied is not None
     taken = solve(problem, LOAD, found(True).shape)
@@ -157,4 +195,23 @@ def test_a_finer_film_halves_the_error_of_the_force_of_a_thin_line(vertices: int
         assert (len(last.shape.x) > mesh.n_v) == refine
         errors.append(abs(last.contacts.force - exact))
     assert last.is_minimum
+    assert errors[1] < 0.5 * errors[0]
+
+
+@pytest.mark.slow
+def test_there_is_a_film_on_a_mesh_whose_own_lies_in_folds() -> None:
+    """Edges of the loop are fifteen times as long as the line is thick."""
+    load = 1200.0
+    values = {"load": load, "diameter": DIAMETER, "twist_ratio": 0.0, "link": 0.0}
+    exact = refined(touching(values))[1].force
+    mesh = mesh_polygon("ellipse", aspect=2.0, vertices=200, grading=5.0)
+    plain, finer = (
+        [*sweep(Problem(mesh, "area", diameter=DIAMETER, refine=refine), [*WAY, load])][-1]
+        for refine in (False, True)
+    )
+    assert plain.status is Status.FOLDED
+    assert finer.is_minimum
+    assert plain.contacts is not None
+    assert finer.contacts is not None
+    errors = [abs(film.contacts.force - exact) for film in (plain, finer)]
     assert errors[1] < 0.5 * errors[0]

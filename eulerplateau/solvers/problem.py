@@ -67,9 +67,8 @@ class Problem:
         the rigidities' C / B, the loop resists twist: it was turned `link` times and then
         welded; by nature it is `rest_curvature` times as curved as a circle of its length.
         With a `diameter`, in units of L, its strands touch and pass through nothing; where
-        they cross, loop and film of true area are finer, unless `refine` is false.
-        Raises SpecError for an unknown film or a wrong number, MeshError for a disk that
-        cannot carry it.
+        they cross, loop and film of true area are finer, unless `refine` is false. Raises
+        SpecError for an unknown film or a wrong number, MeshError for an unfit disk.
         """
         if not isinstance(disk, Disk):
             problem = f"found {type(disk).__name__}; read_disk and mesh_polygon return one"
@@ -79,8 +78,8 @@ class Problem:
         object.__setattr__(self, "film", made)
         rod = Rod(twist_ratio, link, rest_curvature, diameter)
         object.__setattr__(self, "loop", rod.loop(disk.rest_lengths, in_plane))
-        refines = refine and made.refines and diameter is not None
-        object.__setattr__(self, "refines", refines)
+        finer = refine and made.refines and diameter is not None
+        object.__setattr__(self, "refines", finer)
 
     def __repr__(self) -> str:
         """Return one line: the film, and the size of its mesh."""
@@ -111,13 +110,10 @@ class Problem:
         try:
             positions = np.array(x, dtype=np.float64)
         except (TypeError, ValueError):
-            raise SpecError(
-                "start", "should be positions, three numbers a vertex"
-            ) from None
-        if positions.shape != self.disk.x.shape:
-            raise SpecError(
-                "start", f"has shape {positions.shape}; should be {self.disk.x.shape}"
-            )
+            raise SpecError("start", "should be three numbers for a vertex") from None
+        wanted = self.disk.x.shape
+        if positions.shape != wanted:
+            raise SpecError("start", f"has shape {positions.shape}; should be {wanted}")
         return self.disk.shape.moved(positions)
 
     def tied_film(self) -> FilmOfLoop | None:

@@ -161,7 +161,7 @@ def _ended(case: Case) -> End:
     loop = close_with_lengths(problem.loop, loop_of(disk, case))
     if loop is None:
         return End(case, "no loop")
-    first = _overlap(case, loop)
+    first = _overlap(case, loop, disk.rest_lengths)
     parted = separated(strands_of(problem.loop), loop)
     if parted is None:
         return End(case, "not parted", overlaps=(first, np.nan, np.nan))
@@ -169,11 +169,12 @@ def _ended(case: Case) -> End:
     found = solve(problem, case.load, tied.shape(loop))
     seconds = time.process_time() - began
     before = _energy_of_start(problem, tied.shape(parted), case.load)
-    x_loop = found.shape.x_loop
+    x_loop, lengths = found.shape.x_loop, problem.loop_of(found.shape).rest_lengths
+    last = _overlap(case, x_loop, lengths)
     return End(
         case,
         found.status.value,
-        overlaps=(first, _overlap(case, parted), _overlap(case, x_loop)),
+        overlaps=(first, _overlap(case, parted, disk.rest_lengths), last),
         contacts=0 if found.contacts is None else len(found.contacts),
         pull=_pull(found),
         rise=found.energy / before - 1,
@@ -182,9 +183,8 @@ def _ended(case: Case) -> End:
     )
 
 
-def _overlap(case: Case, x_loop: FloatArray) -> float:
+def _overlap(case: Case, x_loop: FloatArray, rest_lengths: FloatArray) -> float:
     """Return by which part of the diameter strands overlap, negative where they do not."""
-    rest_lengths = disk_of(case.aspect).rest_lengths
     least = least_distance(x_loop, rest_lengths, 0.5 * pi * case.diameter)
     return 1 - least / case.diameter
 

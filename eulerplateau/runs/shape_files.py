@@ -239,8 +239,10 @@ def read_shapes(paths: Sequence[Path]) -> ShapeSequence:
     assert first is not None  # there are paths
     most = max(len(points) for points in x)
     full = [np.pad(points, ((0, most - len(points)), (0, 0)), "edge") for points in x]
-    shared = [vertex for vertex in loops[0] if all(vertex in loop for loop in loops)]
-    return ShapeSequence(np.array(full), np.array(shared), tuple(tilings))
+    shared = loops[0]
+    for loop in loops[1:]:
+        shared = shared[np.isin(shared, loop)]
+    return ShapeSequence(np.array(full), shared, tuple(tilings))
 
 
 def _of_one_mesh(first: VtpFile, other: VtpFile) -> bool:

@@ -199,7 +199,8 @@ def turned(film: str) -> Found:
     return first_special(film_point(flat(film), rod, LINK, "link"), LINK)
 
 
-@FILMS
+@pytest.mark.slow
+@pytest.mark.parametrize("film", ["dirichlet", "area"])
 def test_a_fold_is_met_from_both_sides(film: str) -> None:
     special, before, after = found = turned(film)
     assert special.kind == FOLD

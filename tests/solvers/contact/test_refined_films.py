@@ -158,7 +158,12 @@ def test_where_strands_have_parted_the_film_is_its_mesh_s_again() -> None:
 
 
 @pytest.mark.parametrize(
-    ("film", "diameter"), [("area", None), ("springs", None), ("springs", THICK)]
+    ("film", "diameter"),
+    [
+        ("area", None),
+        ("springs", None),
+        pytest.param("springs", THICK, marks=pytest.mark.slow),
+    ],
 )
 def test_a_problem_that_does_not_refine_takes_of_a_refined_shape_its_loop(
     film: str, diameter: float | None

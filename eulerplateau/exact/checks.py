@@ -29,10 +29,7 @@ def whole_number(name: str, value: object, least: int, most: int | None = None) 
 
 def finite(name: str, value: object) -> float:
     """Return a number that is finite and not negative; SpecError for anything else."""
-    try:
-        found = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        found = -1.0
+    found = _number(value)
     if not (isfinite(found) and found >= 0):
         raise SpecError(name, f"found {_shown(value)}; should be finite and not negative")
     return found
@@ -40,14 +37,19 @@ def finite(name: str, value: object) -> float:
 
 def checked_diameter(value: object) -> float:
     """Return a loop's diameter in units of its length; SpecError for anything else."""
-    try:
-        found = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        found = 0.0
+    found = _number(value)
     if not 0 < found <= THICKEST:
         problem = f"found {_shown(value)}; should be above 0 and at most {THICKEST:g}"
         raise SpecError("diameter", problem)
     return found
+
+
+def _number(value: object) -> float:
+    """Return a number; NaN, which is in no range, of what is none."""
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return float("nan")
 
 
 def _shown(value: object) -> str:

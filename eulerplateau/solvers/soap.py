@@ -17,7 +17,7 @@ from eulerplateau.mesh import Shape
 from eulerplateau.solvers.descent import Descent, State
 from eulerplateau.solvers.equilibrium import Equilibrium, Status
 from eulerplateau.solvers.large_loops.coarse_film import coarse_disk
-from eulerplateau.solvers.large_loops.coarse_start import coarsen, smoothed
+from eulerplateau.solvers.large_loops.coarse_start import coarsen
 from eulerplateau.solvers.large_loops.film_models import FilmModels
 from eulerplateau.solvers.models import DenseModels, Model, Models
 from eulerplateau.solvers.problem import Problem
@@ -78,10 +78,10 @@ def _smooth_start(
     """
     if len(start.loop) <= DENSE_LOOP:
         return None
-    smooth = smoothed(problem.loop, start.x_loop, _SMOOTH)
+    coarse = coarsen(problem.loop, _SMOOTH)
+    smooth = coarse.smoothed(start.x_loop)
     if smooth is None:
         return None
-    coarse = coarsen(problem.loop, _SMOOTH)
 
     def shown(x_loop: FloatArray) -> None:
         observe(coarse.prolong(x_loop))

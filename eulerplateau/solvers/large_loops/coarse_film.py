@@ -35,12 +35,8 @@ def ring_triangles(n_b: int) -> IntArray:
     count = round(n_b / (2 * np.pi))
     rings = [_ring(round(n_b * j / count), j / count) for j in range(count, 0, -1)]
     points = np.concatenate([*rings, np.zeros((1, 2))])
-    triangles = np.asarray(Delaunay(points).simplices, dtype=np.int64)
-    a, b, c = points[triangles].transpose(1, 0, 2)
-    one, other = b - a, c - a
-    turned = one[:, 0] * other[:, 1] < one[:, 1] * other[:, 0]
-    triangles[turned] = triangles[turned][:, ::-1]
-    return triangles
+    # In the plane SciPy's triangles are counter-clockwise.
+    return np.asarray(Delaunay(points).simplices, dtype=np.int64)
 
 
 def _ring(size: int, radius: float) -> FloatArray:

@@ -66,6 +66,14 @@ class CoarseLoop:
         """Return the smooth loop (n_b, 3) that keeps all lengths, next to a coarse one."""
         return close_with_lengths(self._fine, self.prolong(coarse))
 
+    def smoothed(self, x: FloatArray) -> FloatArray | None:
+        """Return the smooth loop next to one (n_b, 3) that has been crumpled; else None."""
+        start = self.start(x)
+        smooth = None if start is None else self.smooth(start)
+        if smooth is None or not is_rough(Bending(self._fine), x, smooth):
+            return None
+        return smooth
+
     def energy(self, fine: LoopEnergy) -> LoopEnergy:
         """Return its bending, and the energy of a film of fixed weights on it."""
         nowhere = np.zeros((len(self._arc), 3))
@@ -99,13 +107,3 @@ def is_rough(energy: Term | LoopEnergy, x: FloatArray, smooth: FloatArray) -> bo
     """
     nowhere = np.zeros_like(x)
     return energy.change(nowhere, x) > _ROUGH * energy.change(nowhere, smooth)
-
-
-def smoothed(loop: Loop, x: FloatArray, n_c: int) -> FloatArray | None:
-    """Return the smooth loop next to one (n_b, 3) that has been crumpled; else None."""
-    coarse = coarsen(loop, n_c)
-    start = coarse.start(x)
-    smooth = None if start is None else coarse.smooth(start)
-    if smooth is None or not is_rough(Bending(loop), x, smooth):
-        return None
-    return smooth

@@ -217,8 +217,8 @@ class Problem:
 
     def pinched(self, shape: Shape) -> bool:
         """Return whether strands meet where there is no film, or no loop, beyond that."""
-        loop, x = self.loop_of(shape), shape.x_loop
-        return loop.pinched(x) or self.film.pinched(shape, loop)
+        loop = self.loop_of(shape)
+        return loop.pinched(shape.x_loop) or self.film.pinched(shape, loop)
 
     def equilibrium(
         self,

@@ -239,7 +239,7 @@ def _fit(problem: Problem, found: Equilibrium) -> Shape:
         places = np.concatenate([contacts.s[crossing], contacts.t[crossing]])
         parts = _parts(problem, shape, places, diameter)
         loop = problem.loop_of(shape)
-        lengths = np.repeat(loop.rest_lengths / parts, parts)
+        lengths = loop.cut(parts).rest_lengths
         finest = max(_OF_DIAMETER * diameter, _OF_LOOP * float(lengths.min()))
         x_loop = strands_of(loop).curve(shape.x_loop)(np.cumsum(lengths) - lengths)
         points = contacts.points.mean(axis=0)[crossing]
